@@ -3,24 +3,9 @@
 # Another project has hyperfocal as a meson subproject, then finds by pkg-config what that installs: the library alone,
 # shared and static, and only the headers of include/. It is built as plain C without optimisation, to be quick.
 # Usage: subproject.sh MESON SOURCE_ROOT VERSION C-COMPILER...
-meson=$1 source_root=$2 version=$3
+. "$(dirname "$0")/../support/check.sh"
+meson=$1 source_root=$(absolute "$2") version=$3
 shift 3
-case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-trap 'exit 1' HUP INT TERM
-passed=0 failed=0
-check() {  # NAME COMMAND...
-    name=$1
-    shift
-    if "$@" >"$dir/out" 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        tail -n 20 "$dir/out" | sed 's/^/  /'
-    fi
-}
 refused() {
     ! "$@"
 }
@@ -67,11 +52,11 @@ printf '#include "base/mem.h"\nint main(void)\n{\n    return 0;\n}\n' >peeks.c
 # The wrap mode keeps meson from finding a hyperfocal installed on this machine.
 check "a parent project is set up" env PKG_CONFIG_PATH= "$meson" setup build --prefix "$dir/dest" \
     --wrap-mode=forcefallback -Dhyperfocal:simd=false
-cp "$dir/out" log
+cp "$dir/said" log
 check "it is told the version" grep -q "version $version\$" log
 check "it builds" "$meson" compile -C build
 check "its program runs" build/app
-cp "$dir/out" said
+cp "$dir/said" said
 check "with the library of this version, and a picture" grep -q "^$version: no error, 1\$" said
 check "its programs cannot include what is not public" refused ninja -C build peeks
 check "the library is built" grep -q "^build subprojects/hyperfocal/src/" build/build.ninja
@@ -103,5 +88,4 @@ if command -v pkg-config >/dev/null && [ -n "$pc" ]; then
     check "without one as pkg-config --static says" "$@" app.c -o static $(pkg-config --cflags --static --libs hyperfocal)
     check "to the static library" ./static
 fi
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+finish

@@ -3,21 +3,11 @@
 # hyperfocal-bench, run as a user does: what it refuses and how, and what the JSON of its commands contains.
 # Nothing depends on measured times.
 # Usage: cli.sh BENCH SOURCE_ROOT
-bench=$1 source_root=$2
-case $bench in /*) ;; *) bench=$PWD/$bench ;; esac
-case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
+. "$(dirname "$0")/../support/check.sh"
+bench=$(absolute "$1") source_root=$(absolute "$2")
 cd "$dir" || exit 1
-passed=0 failed=0
-result() {  # NAME STATUS
-    if [ "$2" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $1"
-        sed 's/^/  /' err
-    fi
+explain() {
+    cat err
 }
 # Check for exit code 1, one line on stderr with the words, and nothing on stdout.
 bad() {  # WORDS ARGUMENTS...
@@ -94,7 +84,7 @@ result "--readme" $?
 "$bench" --help=man >out 2>err && grep -q '^.TH hyperfocal-bench 1' out && grep -q '^.SH COMMANDS' out
 result "--help=man" $?
 
-command -v python3 >/dev/null || { echo "skipped: no python3 for the JSON"; echo "$passed passed, $failed failed"; exit $((failed > 0)); }
+command -v python3 >/dev/null || { skip "no python3 for the JSON"; finish; }
 "$bench" formats --size 96x54 --threads 1 --json formats.json >out 2>err && [ "$(grep -c '^rgba8 ' out)" -eq 2 ] && python3 -c '
 import json
 d = json.load(open("formats.json"))
@@ -154,5 +144,4 @@ PYTHON
 json "engine width busy passes overhead_ms all" passes --size 64x64 --frames 3
 json "psnr_db linear_rmse ssim flip energy" truth --image "$source_root/images/lights.exr" \
     --truth "$source_root/images/lights.truth.exr"
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+finish

@@ -3,34 +3,17 @@
 # Shots through the command: names and frames, which frames are skipped or made again, what a kill leaves behind.
 # Usage: batch.sh PROGRAM SOURCE_ROOT. The shot is made of SOURCE_ROOT/images; the beachball shot is taken from
 # $HF_SHARED/images when it is there. HF_KILLS: how often to kill (default 8).
-program=$1
-source_root=$2
-case $program in /*) ;; *) program=$PWD/$program ;; esac
-case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
+. "$(dirname "$0")/../support/check.sh"
+program=$(absolute "$1")
+source_root=$(absolute "$2")
 shared=${HF_SHARED:-/nonexistent}/images
 [ -x "$program" ] && [ -d "$source_root/images" ] || { echo "usage: $0 PROGRAM SOURCE_ROOT" >&2; exit 1; }
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-trap 'exit 1' HUP INT TERM
 cd "$dir" || exit 1
 unset HYPERFOCAL_ISA SLURM_ARRAY_TASK_ID
 
-passed=0 failed=0 skipped=0
-check() {  # NAME COMMAND...
-    name=$1
-    shift
-    if "$@" >/dev/null 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        echo "  hyperfocal $command -> $status"
-        sed 's/^/  stderr: /' err
-    fi
-}
-skip() {
-    skipped=$((skipped + 1))
-    echo "skipped: $1"
+explain() {
+    echo "hyperfocal $command -> $status"
+    sed 's/^/stderr: /' err
 }
 run() {  # ARGUMENTS...
     command=$*
@@ -461,6 +444,4 @@ else
     skip "beachball: HF_SHARED does not name it"
 fi
 
-echo "$passed passed, $failed failed"
-[ "$skipped" -eq 0 ] || echo "($skipped skipped)" >&2
-[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+finish

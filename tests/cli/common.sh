@@ -1,36 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Functions that the tests of the command source, with PROGRAM SOURCE_ROOT: they run, check, and make small pictures.
 # shellcheck shell=sh
+. "$(dirname "$0")/../support/check.sh"
 program=$1
 source_root=$2
 if [ ! -x "$program" ] || [ ! -d "$source_root" ]; then
     echo "usage: $0 PROGRAM SOURCE_ROOT" >&2
     exit 1
 fi
-case $program in /*) ;; *) program=$PWD/$program ;; esac
-case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
-
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-trap 'exit 1' HUP INT TERM
+program=$(absolute "$program")
+source_root=$(absolute "$source_root")
 work=$dir/work
 mkdir "$work" && cd "$work" || exit 1
 unset HYPERFOCAL_ISA
 
-passed=0 failed=0 skipped=0
-result() {  # NAME CONDITION-STATUS
-    if [ "$2" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $1"
-        echo "  hyperfocal $command -> $status"
-        sed 's/^/  stderr: /' "$dir/err"
-    fi
-}
-skip() {
-    skipped=$((skipped + 1))
-    echo "skipped: $1"
+explain() {
+    echo "hyperfocal $command -> $status"
+    sed 's/^/stderr: /' "$dir/err"
 }
 run() {  # ARGUMENTS...
     command=$*
@@ -324,9 +310,3 @@ open('short.exr', 'wb').write(whole[:len(whole) // 2])
 PYTHON
 }
 
-finish() {
-    [ "$skipped" -eq 0 ] || echo "$skipped skipped"
-    echo "$passed passed, $failed failed"
-    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
-    exit
-}

@@ -2,20 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The shells' completions and the man page name every option of the help and no other, and bash completes with its own.
 # Usage: completions.sh COMMAND COMPLETIONS
+. "$(dirname "$0")/../support/check.sh"
 command=$1 completions=$2
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-passed=0 failed=0
-check() {  # NAME COMMAND...
-    name=$1
-    shift
-    if "$@" >/dev/null 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-    fi
-}
 "$command" --help=all | grep -o '^ *\(-[a-z], \)\?--[a-z-]*' | grep -o -e '--[a-z-]*' | sort -u >"$dir/options"
 check "the help has many options" test "$(wc -l <"$dir/options")" -gt 60
 for shell in bash zsh fish; do
@@ -44,5 +32,4 @@ if command -v bash >/dev/null; then
     check "bash: files" test "$(bash -c "$complete" "$dir/bash" "$dir/pict")" = "$dir/picture.exr"
     check "bash: files of an option" test "$(bash -c "$complete" "$dir/bash" --depth-file "$dir/pict")" = "$dir/picture.exr"
 fi
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+finish

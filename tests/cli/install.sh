@@ -2,23 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What is installed works wherever it is put: programs find the library, the helper and the scenes from where they are.
 # Usage: install.sh BUILD MESON SOURCE_ROOT. Skipped where not all is built.
-build=$1 meson=$2 source_root=$3
-case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-trap 'exit 1' HUP INT TERM
-passed=0 failed=0
-check() {  # NAME COMMAND...
-    name=$1
-    shift
-    if "$@" >"$dir/out" 2>"$dir/err"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        sed 's/^/  /' "$dir/out" "$dir/err"
-    fi
-}
+. "$(dirname "$0")/../support/check.sh"
+build=$1 meson=$2 source_root=$(absolute "$3")
 "$meson" install -C "$build" --no-rebuild --destdir "$dir/dest" >"$dir/out" 2>&1 || {
     echo "skipped: not all is built"
     exit 77
@@ -77,9 +62,8 @@ check "the bench finds its scenes" "$bin/hyperfocal-bench" tradeoff --quick --ca
     --setting "--engine gaussian --resolution quarter --iterations 1 --threads 1"
 check "the bench scores a picture" "$bin/hyperfocal-bench" truth --image dof.exr \
     --truth "$dir/elsewhere/share/hyperfocal/images/lights.truth.exr"
-mv out score
+mv said score
 check "by a number of dB" grep -Eq "^ +[0-9]+\.[0-9]{2} " score
 check "the same is the same" sh -c '"$1" truth --image dof.exr --truth dof.exr --json - | grep -q "\"linear_rmse\": 0,"' - \
     "$bin/hyperfocal-bench"
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+finish

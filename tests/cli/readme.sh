@@ -3,23 +3,12 @@
 # README's blocks, pasted as they stand: each command runs, in a folder that has of the repository only the images and the
 # build's programs, and the program in C is compiled, linked and run.
 # Usage: readme.sh PROGRAM SOURCE_ROOT LIBRARY CC...
-program=$1 source_root=$2 library=$3
+. "$(dirname "$0")/../support/check.sh"
+program=$(absolute "$1") source_root=$2 library=$(absolute "$3")
 shift 3
-case $program in /*) ;; *) program=$PWD/$program ;; esac
-case $library in /*) ;; *) library=$PWD/$library ;; esac
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-trap 'exit 1' HUP INT TERM
 cd "$dir" || exit 1
-passed=0 failed=0
-result() {  # NAME STATUS
-    if [ "$2" -eq 0 ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $1"
-        sed 's/^/  /' err
-    fi
+explain() {
+    cat err
 }
 mkdir -p build/src/tools/cli
 ln -s "$source_root/images" images
@@ -32,7 +21,7 @@ for block in block-*; do
     grep -q '^build/src/tools/cli/hyperfocal ' "$block" || continue
     # Without OpenImageIO there are no pictures but EXR.
     if grep -q '\.png' "$block" && [ ! -x build/src/tools/io/hyperfocal-oiio ]; then
-        echo "skipped, there is no hyperfocal-oiio: $(head -n 1 "$block")"
+        skip "there is no hyperfocal-oiio: $(head -n 1 "$block")"
         continue
     fi
     sh -e "$block" >out 2>err </dev/null
@@ -54,5 +43,4 @@ awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$source_root/
 "$@" -Wall -Wextra -Werror -I "$source_root/include" program.c -o program "$library" \
     "-Wl,-rpath,$(dirname "$library")" >out 2>err && ./program >out 2>err
 result "the program in C" $?
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+finish

@@ -3,17 +3,15 @@
 # The recipe of docs/farm.md on a real Slurm, controller and node on this machine: an array of 4 tasks over 16 frames,
 # of which one is killed at work and queued again. All frames must be those of an undisturbed run.
 # Usage: slurm.sh PROGRAM SOURCE_ROOT. Exits with 77, skipped, without Slurm or without the right to run it.
-program=$1
-source_root=$2
-case $program in /*) ;; *) program=$PWD/$program ;; esac
-case $source_root in /*) ;; *) source_root=$PWD/$source_root ;; esac
+. "$(dirname "$0")/../support/check.sh"
+program=$(absolute "$1")
+source_root=$(absolute "$2")
 PATH=$PATH:/usr/sbin:/sbin
 for tool in slurmctld slurmd sbatch squeue scontrol; do
     command -v $tool >/dev/null || { echo "skipped: there is no $tool (Debian: slurm-wlm)"; exit 77; }
 done
 [ "$(id -u)" -eq 0 ] || { echo "skipped: a node's daemon needs root"; exit 77; }
 
-dir=$(mktemp -d) || exit 1
 chmod 755 "$dir"
 cd "$dir" || exit 1
 controller= node=
@@ -24,7 +22,6 @@ stop() {
     rm -rf "$dir"
 }
 trap stop EXIT
-trap 'exit 1' HUP INT TERM
 
 host=$(uname -n | cut -d. -f1)
 port=$((20000 + $$ % 20000))
@@ -97,21 +94,11 @@ while squeue -h -j "$job" 2>/dev/null | grep -q . && [ $i -lt 400 ]; do
 done
 
 "$program" in/shot.####.exr -o good/shot.####.exr --engine gather --focus 5 --range 3 2>good.log
-passed=0 failed=0
-check() {
-    name=$1
-    shift
-    if "$@"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAILED: $name"
-        tail -n 6 task-*.log
-    fi
+explain() {
+    tail -n 6 task-*.log
 }
 check "a task was queued again" test "${requeued:-0}" = 1
 check "and began twice" test "$(grep -c 'frames/s' task-2.log)" -ge 1 -a "$(grep -c '^hyperfocal: 1/4' task-2.log)" = 2
 check "16 frames" test "$(ls -A out | wc -l)" = 16
 check "all as in an undisturbed run" diff -r good out
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+finish
