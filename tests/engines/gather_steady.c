@@ -12,7 +12,7 @@
 #include "support/check.h"
 #include "support/render.h"
 
-enum { WIDTH = 120, HEIGHT = 88, PIXELS = WIDTH * HEIGHT, STEPS = 48, TRACKED = 2, HALVINGS = 20 };
+enum { WIDTH = 120, HEIGHT = 88, PIXELS = WIDTH * HEIGHT, STEPS = 48, HALVINGS = 20 };
 
 static int rounds = 20;
 static unsigned seed = 1;
@@ -144,26 +144,12 @@ static double jump_of(struct hf_context *c, const struct shot *s, struct rng *rn
     struct pulling w = {c, s, PULL_FOCUS};
     const int which = rng_below(rng, 4);
     w.pull = which == 3 ? PULL_GAIN : which < 2 ? (lens ? PULL_FOCUS : PULL_RANGE) : lens ? PULL_APERTURE : PULL_RADIUS;
-    double first, last, worst[TRACKED] = {0}, place[TRACKED] = {0}, left = 0;
+    double first, last, left = 0;
     any_ends(rng, s, w.pull, &first, &last);
-    const double width = (last - first) / STEPS;
-    struct picture before = at(&w, first);
-    for (int i = 0; i < STEPS; i++) {
-        struct picture now = at(&w, first + (i + 1) * width);
-        double d = display_distance(&before, &now), where = first + i * width;
-        for (int k = 0; k < TRACKED; k++)
-            if (d > worst[k]) {
-                const double old = worst[k], old_place = place[k];
-                worst[k] = d, place[k] = where;
-                d = old, where = old_place;
-            }
-        picture_free(&before);
-        before = now;
-    }
-    picture_free(&before);
-    for (int k = 0; k < TRACKED; k++) {
-        double from = place[k], to = place[k] + width;
-        if (worst[k] <= MOST)
+    const struct large_steps large = large_steps(at, display_distance, &w, first, last, STEPS);
+    for (int k = 0; k < LARGE_STEPS; k++) {
+        double from = large.place[k], to = from + large.width;
+        if (large.change[k] <= MOST)
             continue;
         const double jump = step_left(at, display_distance, &w, HALVINGS, &from, &to);
         CHECK_MSG(jump <= MOST, "%s: %s jumps by %.3g codes at %.9g", s->name, pull_names[w.pull], jump, from);

@@ -7,7 +7,7 @@
 
 #include "support/check.h"
 
-enum { WIDTH = 64, HEIGHT = 44, HALVINGS = 20, TRACKED = 3 };
+enum { WIDTH = 64, HEIGHT = 44, HALVINGS = 20 };
 
 enum pull { PULL_FOCUS, PULL_RANGE, PULL_STRENGTH, PULL_DOLLY, PULL_RADIUS, PULLS };
 static const struct {
@@ -148,29 +148,15 @@ static void pulled(const struct run *r, enum pull pull, const struct scene *s, c
     const int steps = r->full ? 1000 : 120;
     struct picture moved = picture_copy(&s->depth);
     struct pulling w = {r, s, &moved, pull};
-    double worst[TRACKED] = {0}, place[TRACKED] = {0}, width = (pulls[pull].to - pulls[pull].from) / steps;
-    struct picture before = at(&w, pulls[pull].from);
-    for (int i = 1; i <= steps; i++) {
-        struct picture now = at(&w, pulls[pull].from + i * width);
-        double d = display_distance(&before, &now), where = pulls[pull].from + (i - 1) * width;
-        for (int k = 0; k < TRACKED; k++)
-            if (d > worst[k]) {
-                const double old = worst[k], old_place = place[k];
-                worst[k] = d, place[k] = where;
-                d = old, where = old_place;
-            }
-        picture_free(&before);
-        before = now;
-    }
-    picture_free(&before);
+    const struct large_steps large = large_steps(at, display_distance, &w, pulls[pull].from, pulls[pull].to, steps);
     const char *why;
-    for (int k = 0; k < TRACKED; k++) {
-        if (worst[k] <= 0.5)
+    for (int k = 0; k < LARGE_STEPS; k++) {
+        if (large.change[k] <= 0.5)
             continue;
-        double from = place[k], to = place[k] + width;
+        double from = large.place[k], to = from + large.width;
         const double left = step_left(at, display_distance, &w, HALVINGS, &from, &to);
         const double bound = allowed(r, pull, from, &why);
-        see(r, pulls[pull].name, why, left, bound, "%s, at %.9g (step %.3g)", scene, from, worst[k]);
+        see(r, pulls[pull].name, why, left, bound, "%s, at %.9g (step %.3g)", scene, from, large.change[k]);
     }
     see(r, pulls[pull].name, half_a_code(r), 0, FLOAT_STEP, "%s", scene);
     picture_free(&moved);

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { WIDTH = 64, HEIGHT = 44, HALVINGS = 20, TRACKED = 3 };
+enum { WIDTH = 64, HEIGHT = 44, HALVINGS = 20 };
 
 enum pulled { LENS_FOCUS, LENS_STOP, RANGE_FOCUS, RANGE_DISTANCE, RANGE_RADIUS, RING, CAT_EYE, PULLED };
 static const struct {
@@ -89,31 +89,16 @@ static void pull_one(const struct run *r, enum pulled pull, const struct scene *
                      int steps)
 {
     struct pulling w = {r, s, pull};
-    double worst[TRACKED] = {0}, place[TRACKED] = {0};
-    const double from = pulls[pull].from, width = (pulls[pull].to - from) / steps;
     double (*distance)(const struct picture *a, const struct picture *b) = lamps ? exposed_distance : display_distance;
     char what[80];
     const char *why;
     const double bound = allowed(r, pull, lamps, &why);
-    struct picture before = at(&w, from);
-    for (int i = 1; i <= steps; i++) {
-        struct picture now = at(&w, from + i * width);
-        double d = distance(&before, &now), where = from + (i - 1) * width;
-        for (int k = 0; k < TRACKED; k++)
-            if (d > worst[k]) {
-                const double old = worst[k], old_place = place[k];
-                worst[k] = d, place[k] = where;
-                d = old, where = old_place;
-            }
-        picture_free(&before);
-        before = now;
-    }
-    picture_free(&before);
+    const struct large_steps large = large_steps(at, distance, &w, pulls[pull].from, pulls[pull].to, steps);
     snprintf(what, sizeof what, "%s: jump, codes%s", pulls[pull].name, lamps ? " of the brightest around" : "");
     see_look(r, row_name(what), why, 0, bound, "%s", scene);
-    for (int k = 0; k < (r->full ? TRACKED : 1); k++) {
-        double a = place[k], b = place[k] + width;
-        if (worst[k] <= bound)
+    for (int k = 0; k < (r->full ? LARGE_STEPS : 1); k++) {
+        double a = large.place[k], b = a + large.width;
+        if (large.change[k] <= bound)
             continue;
         const double left = step_left(at, distance, &w, HALVINGS, &a, &b);
         see_look(r, row_name(what), why, left, bound, "%s, at %.9g to %.9g", scene, a, b);

@@ -131,6 +131,28 @@ double exposed_distance(const struct picture *a, const struct picture *b)
     return worst;
 }
 
+struct large_steps large_steps(struct picture (*at)(void *cookie, double t),
+                               double (*distance)(const struct picture *a, const struct picture *b), void *cookie,
+                               double from, double to, int steps)
+{
+    struct large_steps large = {.width = (to - from) / steps};
+    struct picture before = at(cookie, from);
+    for (int i = 0; i < steps; i++) {
+        struct picture now = at(cookie, from + (i + 1) * large.width);
+        double d = distance(&before, &now), where = from + i * large.width;
+        for (int k = 0; k < LARGE_STEPS; k++)
+            if (d > large.change[k]) {
+                const double old = large.change[k], old_place = large.place[k];
+                large.change[k] = d, large.place[k] = where;
+                d = old, where = old_place;
+            }
+        picture_free(&before);
+        before = now;
+    }
+    picture_free(&before);
+    return large;
+}
+
 double step_left(struct picture (*at)(void *cookie, double t),
                  double (*distance)(const struct picture *a, const struct picture *b), void *cookie, int halvings,
                  double *from, double *to)

@@ -136,6 +136,16 @@ double display_distance(const struct picture *a, const struct picture *b);
 // 1, is white.
 double exposed_distance(const struct picture *a, const struct picture *b);
 
+// A pull from `from` to `to` in equal steps: those with the greatest changes by `distance`, the greatest first, and where each
+// begins. at: makes the picture for a value of the parameter.
+enum { LARGE_STEPS = 3 };
+struct large_steps {
+    double change[LARGE_STEPS], place[LARGE_STEPS], width;
+};
+struct large_steps large_steps(struct picture (*at)(void *cookie, double t),
+                               double (*distance)(const struct picture *a, const struct picture *b), void *cookie,
+                               double from, double to, int steps);
+
 // The change that remains when the step of a parameter from *from to *to has been halved, each time towards the greater
 // change by `distance`, until no float lies between its ends, or `halvings` times. at: makes the picture for a
 // value of the parameter.
