@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything OpenImageIO does for us, behind a C interface that no exception leaves. Part of the helper program.
-#include "tools/io/oiio/oiio.h"
-
+// Pictures through OpenImageIO, behind a C interface that no exception leaves. Part of the helper program.
 #include "tools/io/oiio/icc.h"
+#include "tools/io/oiio/streams.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <exception>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include <fcntl.h>
 #include <strings.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
-using OIIO::ImageInput;
-using OIIO::ImageOutput;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
 
 struct hf_oiio {
     const char *path;
@@ -37,134 +18,6 @@ struct hf_oiio {
 
 namespace
 {
-
-int source = -1;  // descriptor of the file that this process reads
-
-// By what name to open it: by its own, whose end says the format, unless that is another file's by now.
-std::string name_of(const char *path)
-{
-    struct stat named, opened;
-    const bool same = !stat(path, &named) && !fstat(source, &opened) && named.st_dev == opened.st_dev &&
-                      named.st_ino == opened.st_ino;
-    return same || source < 0 ? path : "/proc/self/fd/" + std::to_string(source);
-}
-
-// Runs body, which returns 0 or -1; exceptions become an error like any other.
-template <class Body> int guarded(const char *path, hf_io_error *err, Body body) noexcept
-{
-    try {
-        return body();
-    } catch (const std::bad_alloc &) {
-        return hf_io_fail(err, "%s: out of memory", path);
-    } catch (const std::exception &e) {
-        return hf_io_fail(err, "%s: %s", path, e.what());
-    } catch (...) {
-        return hf_io_fail(err, "%s: OpenImageIO failed", path);
-    }
-}
-
-std::string why(std::string message)
-{
-    while (!message.empty() && std::isspace((unsigned char)message.back()))
-        message.pop_back();
-    return message.empty() ? "OpenImageIO gives no reason" : message;
-}
-
-// OpenImageIO prints errors that nobody asked for when the reader goes, so every reader goes through here.
-struct Input {
-    std::unique_ptr<ImageInput> in;
-
-    ~Input()
-    {
-        if (in)
-            in->geterror();
-        OIIO::geterror();
-    }
-
-    int fail(const char *path, hf_io_error *err)
-    {
-        const std::string message = in && in->has_error() ? in->geterror() : OIIO::geterror();
-        if (message.find("could not find a format reader") != std::string::npos)
-            return hf_io_fail(err, "%s: not a picture of any kind that can be read here", path);
-        return hf_io_fail(err, "%s: truncated or corrupt, or no picture: %s", path, why(message).c_str());
-    }
-};
-
-// A writer into memory: what goes wrong on a disk is then the program's business, who looks at what write() returns.
-// Formats that insist on a file of their own get one in memory, and are read back, as they do not look either.
-struct Output {
-    const char *path;
-    hf_io_error *err;
-    OIIO::Filesystem::IOVecOutput memory;
-    std::unique_ptr<ImageOutput> out;
-    int file = -1;
-    char name[64] = "";
-
-    Output(const char *p, hf_io_error *e, const std::string &format) : path(p), err(e), out(ImageOutput::create(format))
-    {
-    }
-
-    ~Output()
-    {
-        if (out)
-            out->geterror();
-        OIIO::geterror();
-        if (file >= 0)
-            ::close(file);
-    }
-
-    int fail()
-    {
-        const std::string message = out && out->has_error() ? out->geterror() : OIIO::geterror();
-        return hf_io_fail(err, "%s: cannot write: %s", path, why(message).c_str());
-    }
-
-    int open(const ImageSpec &spec)
-    {
-        if (!out)
-            return fail();
-        if (out->supports("ioproxy")) {
-            out->set_ioproxy(&memory);
-        } else {
-            file = memfd_create("picture", MFD_CLOEXEC);
-            snprintf(name, sizeof(name), "/proc/self/fd/%d", file);
-        }
-        return out->open(file >= 0 ? name : path, spec) ? 0 : fail();
-    }
-
-    int read_back(const ImageSpec &spec)
-    {
-        Input input;
-        input.in = ImageInput::create(out->format_name());
-        ImageSpec found;
-        if (!input.in || !input.in->open(name, found))
-            return input.fail(path, err);
-        std::vector<float> pixels((size_t)found.width * (size_t)found.height * (size_t)found.nchannels);
-        if (found.width != spec.width || found.height != spec.height || found.nchannels != spec.nchannels)
-            return hf_io_fail(err, "%s: cannot write: the format holds another picture than it was given", path);
-        return input.in->read_image(0, 0, 0, found.nchannels, TypeDesc::FLOAT, pixels.data()) ? 0
-                                                                                              : input.fail(path, err);
-    }
-
-    int write(TypeDesc type, const void *pixels, hf_io_bytes *made)
-    {
-        const ImageSpec spec = out->spec();
-        struct stat st;
-        if (!out->write_image(type, pixels) || !out->close())
-            return fail();
-        if (file >= 0 && (read_back(spec) || fstat(file, &st)))
-            return -1;
-        made->size = file >= 0 ? (size_t)st.st_size : memory.buffer().size();
-        made->data = made->size ? (uint8_t *)malloc(made->size) : nullptr;
-        if (!made->data)
-            return hf_io_fail(err, "%s: cannot write: %s", path, made->size ? "out of memory" : "nothing was written");
-        if (file < 0)
-            memcpy(made->data, memory.buffer().data(), made->size);
-        else if (pread(file, made->data, made->size, 0) != (ssize_t)made->size)
-            return hf_io_fail(err, "%s: cannot write: the format's writer lost its file", path);
-        return 0;
-    }
-};
 
 int open_input(Input &input, const char *path, hf_io_error *err)
 {
@@ -180,14 +33,6 @@ int open_input(Input &input, const char *path, hf_io_error *err)
         if (!strcmp(input.in->format_name(), name))
             return hf_io_fail(err, "%s: files of this kind (%s) are not supported", path, name);
     return 0;
-}
-
-int find_channel(const ImageSpec &spec, const char *name)
-{
-    for (int c = 0; c < spec.nchannels; c++)
-        if (spec.channel_name(c) == name)
-            return c;
-    return -1;
 }
 
 // The given channel; or Z, depth.Z, any single channel with "depth" in its name. -1: none.
@@ -514,94 +359,6 @@ int write_picture(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error
     return output.write(TypeDesc::FLOAT, pixels.data(), made);
 }
 
-const TypeDesc exr_types[3] = {TypeDesc::UINT32, TypeDesc::HALF, TypeDesc::FLOAT};
-
-size_t type_bytes(int type)
-{
-    return type == 1 ? 2 : 4;
-}
-
-// Between OpenEXR's rows of channels and OpenImageIO's pixels of channels: one channel of one row.
-void copy_strided(uint8_t *to, size_t to_step, const uint8_t *from, size_t from_step, size_t bytes, int n)
-{
-    for (int i = 0; i < n; i++)
-        memcpy(to + (size_t)i * to_step, from + (size_t)i * from_step, bytes);
-}
-
-void set_threads(const hf_io_samples *s)
-{
-    OIIO::attribute("threads", s->threads);
-    OIIO::attribute("exr_threads", s->threads > 1 ? s->threads : s->threads == 1 ? -1 : 0);
-}
-
-int read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
-{
-    set_threads(s);
-    Input input;
-    input.in = ImageInput::create("openexr");
-    ImageSpec spec;
-    if (!input.in || !input.in->open(name_of(path), spec) || !input.in->seek_subimage(part, 0))
-        return input.fail(path, err);
-    spec = input.in->spec();
-    if (spec.width != s->width || spec.height != s->height || spec.deep)
-        return hf_io_fail(err, "%s: truncated or corrupt: OpenImageIO finds %d x %d pixels in part %d, not %d x %d",
-                          path, spec.width, spec.height, part, s->width, s->height);
-    const size_t step = spec.pixel_bytes(true);
-    std::vector<uint8_t> pixels(step * (size_t)s->width * (size_t)s->height);
-    if (!input.in->read_image(part, 0, 0, spec.nchannels, TypeDesc::UNKNOWN, pixels.data()))
-        return input.fail(path, err);
-    size_t at = 0;
-    for (int c = 0; c < s->channel_count; c++) {
-        const int from = find_channel(spec, s->names[c]);
-        const size_t bytes = type_bytes(s->types[c]);
-        if (from < 0 || spec.channelformat(from) != exr_types[s->types[c]])
-            return hf_io_fail(err, "%s: OpenImageIO does not give channel %s of part %d as it is", path, s->names[c],
-                              part);
-        const size_t offset = spec.pixel_bytes(0, from, true);
-        for (int y = 0; y < s->height; y++)
-            copy_strided(s->data + (size_t)y * s->row_bytes + at, bytes,
-                         pixels.data() + (size_t)y * (size_t)s->width * step + offset, step, bytes, s->width);
-        at += bytes * (size_t)s->width;
-    }
-    return 0;
-}
-
-ImageSpec samples_spec(const hf_io_samples *s, const char *compression, float level)
-{
-    ImageSpec spec(s->width, s->height, s->channel_count, exr_types[s->types[0]]);
-    spec.x = spec.full_x = s->x;
-    spec.y = spec.full_y = s->y;
-    spec.channelnames.assign(s->names, s->names + s->channel_count);
-    for (int c = 0; c < s->channel_count; c++)
-        spec.channelformats.push_back(exr_types[s->types[c]]);
-    spec.tile_width = s->tile_width;
-    spec.tile_height = s->tile_height;
-    spec.tile_depth = s->tile_width ? 1 : 0;
-    spec.attribute("compression", level > 0 ? compression + (":" + std::to_string(level)) : std::string(compression));
-    return spec;
-}
-
-int write_samples(hf_io_bytes *made, const char *path, const hf_io_samples *s, const char *compression, float level,
-                  hf_io_error *err)
-{
-    set_threads(s);
-    Output output(path, err, "openexr");
-    const ImageSpec spec = samples_spec(s, compression, level);
-    size_t step = 0, at = 0, offset = 0;
-    for (int c = 0; c < s->channel_count; c++)
-        step += type_bytes(s->types[c]);
-    std::vector<uint8_t> pixels(step * (size_t)s->width * (size_t)s->height);
-    for (int c = 0; c < s->channel_count; c++) {
-        const size_t bytes = type_bytes(s->types[c]);
-        for (int y = 0; y < s->height; y++)
-            copy_strided(pixels.data() + (size_t)y * (size_t)s->width * step + offset, step,
-                         s->data + (size_t)y * s->row_bytes + at, bytes, bytes, s->width);
-        offset += bytes;
-        at += bytes * (size_t)s->width;
-    }
-    return output.open(spec) ? -1 : output.write(TypeDesc::UNKNOWN, pixels.data(), made);
-}
-
 }  // namespace
 
 void hf_oiio_prepare(void)
@@ -697,15 +454,4 @@ int hf_oiio_check_format(const char *path, hf_io_error *err)
 int hf_oiio_write(hf_io_bytes *made, const hf_oiio_picture *picture, hf_io_error *err)
 {
     return guarded(picture->path, err, [&] { return write_picture(made, picture, err); });
-}
-
-int hf_oiio_read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
-{
-    return guarded(path, err, [&] { return read_samples(path, part, s, err); });
-}
-
-int hf_oiio_write_samples(hf_io_bytes *made, const char *path, const hf_io_samples *s, const char *compression,
-                          float level, hf_io_error *err)
-{
-    return guarded(path, err, [&] { return write_samples(made, path, s, compression, level, err); });
 }

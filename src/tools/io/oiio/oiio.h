@@ -2,7 +2,7 @@
 // What OpenImageIO does for us. It never runs in the program's own process: a helper program, hyperfocal-oiio, is
 // started when the first file needs it, so that a damaged file cannot damage us, libraries that print are not heard, and
 // who reads EXR does not wait for OpenImageIO to load. client.c has these functions for the program and asks the
-// helper; oiio.cpp, the only C++, has the same functions for the helper, where serve.c calls them.
+// helper; oiio.cpp and samples.cpp, the only C++, have the same functions for the helper, where serve.c calls them.
 #ifndef HF_IO_OIIO_H
 #define HF_IO_OIIO_H
 
