@@ -12,30 +12,32 @@
 //         err = hf_render(c, &picture, &picture, &depth, &p);      // in place
 //     hf_close(&c);
 //
-// Words. "CoC" is the circle of confusion: what the lens makes of a point. Its radius is counted in full-resolution pixels,
-// negative in front of the plane in focus (near), positive behind it (far). Depth is view depth unless said otherwise: positive
-// distance along the camera axis, in scene units. Pixel centres lie at +0.5. Colours are linear and premultiplied by alpha.
-// "The chapter" is W. Sterna, "Practical Gather-based Bokeh Depth of Field", GPU Zen 2, which the engine of that name reproduces.
+// Words. "CoC" is the circle of confusion: what the lens makes of a point. Its radius is counted in full-resolution
+// pixels, negative in front of the plane in focus (near), positive behind it (far). Depth is view depth unless said
+// otherwise: positive distance along the camera axis, in scene units. Pixel centres lie at +0.5. Colours are linear and
+// premultiplied by alpha. "The chapter" is W. Sterna, "Practical Gather-based Bokeh Depth of Field", GPU Zen 2, which
+// the engine of that name reproduces.
 //
-// Threads. One thread at a time may use a context. Any number of contexts may be used at once. After fork() the child has none
-// of the context's threads: a context with threads of its own returns HF_ERR_THREAD there, and hf_close frees its memory.
-// Functions without a context may be called by any thread at any time.
+// Threads. One thread at a time may use a context. Any number of contexts may be used at once. After fork() the child
+// has none of the context's threads: a context with threads of its own returns HF_ERR_THREAD there, and hf_close frees
+// its memory. Functions without a context may be called by any thread at any time.
 //
-// Errors. Functions return HF_OK (0) or a negative enum hf_error. No function prints, exits or aborts. The reason is one
-// sentence in a struct hf_message: functions with a context send it to the log and keep it for hf_get_problem, functions
-// without one fill the struct that the caller gives.
+// Errors. Functions return HF_OK (0) or a negative enum hf_error. No function prints, exits or aborts. The reason is
+// one sentence in a struct hf_message: functions with a context send it to the log and keep it for hf_get_problem,
+// functions without one fill the struct that the caller gives.
 //
-// How this interface grows. Every struct begins with its size. The caller sets it to sizeof the struct, also before a call that
-// fills the struct. A new release adds fields at the end; 0 is always a valid value of a new field, and keeps the old behaviour.
-//   - Older program, newer library: the library takes the fields that it does not get as their defaults, and writes no byte
-//     beyond size.
-//   - Newer program, older library: the library accepts a struct that is larger than its own if all bytes beyond are 0, else it
-//     returns HF_ERR_ARG and says so. Where it fills such a struct, it sets the bytes beyond to 0.
+// How this interface grows. Every struct begins with its size. The caller sets it to sizeof the struct, also before a
+// call that fills the struct. A new release adds fields at the end; 0 is always a valid value of a new field, and keeps
+// the old behaviour.
+//   - Older program, newer library: the library takes the fields that it does not get as their defaults, and writes no
+//     byte beyond size.
+//   - Newer program, older library: the library accepts a struct that is larger than its own if all bytes beyond are 0,
+//     else it returns HF_ERR_ARG and says so. Where it fills such a struct, it sets the bytes beyond to 0.
 //   - A size below that of release 0.9.0 is HF_ERR_ARG.
-// Enumerators are added at the end, so a program must expect values that it does not know. Lists (engines, words) have no count:
-// call their function with 0, 1, ... until it returns NULL. Reserved words and bytes must be 0. HF_ABI_VERSION in version.h says
-// when all this does not suffice. What benchmarks and viewers need beyond this header is in inspect.h, which may change in any
-// release.
+// Enumerators are added at the end, so a program must expect values that it does not know. Lists (engines, words) have
+// no count: call their function with 0, 1, ... until it returns NULL. Reserved words and bytes must be 0.
+// HF_ABI_VERSION in version.h says when all this does not suffice. What benchmarks and viewers need beyond this header
+// is in inspect.h, which may change in any release.
 #ifndef HYPERFOCAL_H
 #define HYPERFOCAL_H
 
@@ -78,8 +80,8 @@ struct hf_message {
     int error;                // what the call returns, HF_OK for warnings and notes
     // The field or argument that the sentence is about, as in C: "range.strength", "src.format". "" if there is none.
     char argument[64];
-    // One sentence without line break. It begins with the argument, if there is one: a program that calls it something else,
-    // an option perhaps, prints its own name and then sentence + strlen(argument).
+    // One sentence without line break. It begins with the argument, if there is one: a program that calls it something
+    // else, an option perhaps, prints its own name and then sentence + strlen(argument).
     char sentence[256];
 };
 
@@ -95,39 +97,40 @@ HF_API int hf_isa_available(enum hf_isa isa);
 // How a context is set up. 0 is the default of every field except size.
 struct hf_config {
     size_t size;  // sizeof(struct hf_config)
-    // Threads to work on, the caller included: 0 (default), one for each online processor, to 256. With parallel_for it is the
-    // number of worker slots that the host promises never to exceed.
+    // Threads to work on, the caller included: 0 (default), one for each online processor, to 256. With parallel_for it
+    // is the number of worker slots that the host promises never to exceed.
     int threads;
     // The instruction set to use. Default HF_ISA_AUTO. HF_ERR_ISA if it is not available.
     enum hf_isa isa;
 
-    // Allocator: both functions or neither. Default: malloc's family. alloc returns size bytes aligned to align (a power of
-    // two), or NULL. The library allocates in hf_open and on the first frame of a size, not on every frame. Thread stacks and
-    // the C library's own memory for threads do not come from here.
+    // Allocator: both functions or neither. Default: malloc's family. alloc returns size bytes aligned to align (a
+    // power of two), or NULL. The library allocates in hf_open and on the first frame of a size, not on every frame.
+    // Thread stacks and the C library's own memory for threads do not come from here.
     void *(*alloc)(void *cookie, size_t size, size_t align);
     void (*free)(void *cookie, void *ptr);
     void *alloc_cookie;
 
-    // Receives each error, warning and note, on the caller's thread. The message lives until log returns. Default: none.
+    // Receives each error, warning and note, on the caller's thread. The message lives until log returns. Default:
+    // none.
     void (*log)(void *cookie, const struct hf_message *message);
     void *log_cookie;
 
-    // Size of the tiles that threads are given, half-resolution pixels: 0 (default), which measured fastest, or 16 to 65536,
-    // tile_width a multiple of 16. It changes speed and memory, never a bit.
+    // Size of the tiles that threads are given, half-resolution pixels: 0 (default), which measured fastest, or 16 to
+    // 65536, tile_width a multiple of 16. It changes speed and memory, never a bit.
     int tile_width, tile_height;
 
-    // The host's own threads. parallel_for must call fn(arg, i, worker) once for each i in [0, n), from any threads, with
-    // 0 <= worker < threads and no worker number in use twice at a time, and return when all calls are done. NULL (default):
-    // the library starts threads of its own in hf_open.
+    // The host's own threads. parallel_for must call fn(arg, i, worker) once for each i in [0, n), from any threads,
+    // with 0 <= worker < threads and no worker number in use twice at a time, and return when all calls are done. NULL
+    // (default): the library starts threads of its own in hf_open.
     void (*parallel_for)(void *cookie, int n, void (*fn)(void *arg, int i, int worker), void *arg);
     void *parallel_cookie;
 };
 
 struct hf_context;
 
-// Make a context. config may be NULL (defaults) and need only live until the call returns. On error *out is NULL. abi is the
-// caller's HF_ABI_VERSION: when it is another one than the library's, config is not read. Errors: HF_ERR_ABI, HF_ERR_ARG,
-// HF_ERR_MEMORY, HF_ERR_THREAD, HF_ERR_ISA.
+// Make a context. config may be NULL (defaults) and need only live until the call returns. On error *out is NULL. abi
+// is the caller's HF_ABI_VERSION: when it is another one than the library's, config is not read. Errors: HF_ERR_ABI,
+// HF_ERR_ARG, HF_ERR_MEMORY, HF_ERR_THREAD, HF_ERR_ISA.
 HF_API int hf_open_abi(struct hf_context **out, const struct hf_config *config, int abi);
 
 // The same for programs that are compiled with this header.
@@ -189,8 +192,8 @@ enum hf_depth_type {
     HF_DEPTH_COC,           // signed CoC radius in full-resolution pixels; no lens or range is applied
 };
 
-// How a depth sample is stored. Whole numbers are divided by their largest value, which gives 0 to 1, and are rounded to the
-// nearest float. The log warns where whole numbers are surely no distances.
+// How a depth sample is stored. Whole numbers are divided by their largest value, which gives 0 to 1, and are rounded
+// to the nearest float. The log warns where whole numbers are surely no distances.
 enum hf_depth_format {
     HF_DEPTH_FORMAT_FLOAT32,
     HF_DEPTH_FORMAT_FLOAT16,
@@ -200,33 +203,35 @@ enum hf_depth_format {
     HF_DEPTH_FORMAT_X8D24,  // a 32-bit word, depth in its lower 24 bits: Direct3D, Vulkan
 };
 
-// Depth of a picture of the same width and height. It is never written. A NaN counts as the largest finite depth among its 8
-// neighbours; where there is none, as no surface.
+// Depth of a picture of the same width and height. It is never written. A NaN counts as the largest finite depth among
+// its 8 neighbours; where there is none, as no surface.
 struct hf_depth {
     size_t size;                  // sizeof(struct hf_depth)
     const void *data;             // the top left pixel
     ptrdiff_t stride;             // bytes from one row to the next, as for hf_image
     enum hf_depth_type type;      // default HF_DEPTH_VIEW
     enum hf_depth_format format;  // default HF_DEPTH_FORMAT_FLOAT32
-    // Clip planes for HF_DEPTH_NDC_*, scene units: 0 < near_plane < far_plane; far_plane may be INFINITY. The gaussian engine
-    // scales depth by them whatever the type: there 0 (default) means 1 for near_plane and 100 times near_plane for far_plane.
+    // Clip planes for HF_DEPTH_NDC_*, scene units: 0 < near_plane < far_plane; far_plane may be INFINITY. The gaussian
+    // engine scales depth by them whatever the type: there 0 (default) means 1 for near_plane and 100 times near_plane
+    // for far_plane.
     float near_plane, far_plane;
-    // For HF_DEPTH_RAY: focal length in pixels (> 0), and the picture's optical axis in pixels from the top left corner.
+    // For HF_DEPTH_RAY: focal length in pixels (> 0), and the picture's optical axis in pixels from the top left
+    // corner.
     float focal_px, center_x, center_y;
     uint32_t reserved;
 };
 
-// Read the view depth at pixel (x, y) of a width x height depth buffer (at most 65536 each) into *z: for a viewer's command to
-// focus where the user points. message may be NULL. Errors: HF_ERR_FOCUS if there is no surface; HF_ERR_ARG, also for
-// HF_DEPTH_COC, which holds no distances.
+// Read the view depth at pixel (x, y) of a width x height depth buffer (at most 65536 each) into *z: for a viewer's
+// command to focus where the user points. message may be NULL. Errors: HF_ERR_FOCUS if there is no surface; HF_ERR_ARG,
+// also for HF_DEPTH_COC, which holds no distances.
 HF_API int hf_depth_at(const struct hf_depth *depth, int width, int height, int x, int y, float *z,
                        struct hf_message *message);
 
-// Blur src into dst. Both have the same size; their formats may differ. dst may be src itself, with the same pointers, strides
-// and format; any other overlap is undefined. An output without alpha drops it. An output with alpha gets alpha 1 from an input
-// without. A colour sample that is NaN or infinite counts as the mean of the finite ones among its 8 neighbours, else as 0, and
-// the report counts it. params may be NULL (defaults). On error the pixels of dst are unspecified. Errors: HF_ERR_ARG,
-// HF_ERR_FOCUS, HF_ERR_MEMORY, HF_ERR_THREAD, HF_ERR_CANCELLED.
+// Blur src into dst. Both have the same size; their formats may differ. dst may be src itself, with the same pointers,
+// strides and format; any other overlap is undefined. An output without alpha drops it. An output with alpha gets alpha
+// 1 from an input without. A colour sample that is NaN or infinite counts as the mean of the finite ones among its 8
+// neighbours, else as 0, and the report counts it. params may be NULL (defaults). On error the pixels of dst are
+// unspecified. Errors: HF_ERR_ARG, HF_ERR_FOCUS, HF_ERR_MEMORY, HF_ERR_THREAD, HF_ERR_CANCELLED.
 HF_API int hf_render(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                      const struct hf_depth *depth, const struct hf_params *params);
 
@@ -236,48 +241,52 @@ struct hf_region {
     int x, y, width, height;  // pixels from the top left corner; width and height at least 1, all of it in the picture
 };
 
-// As hf_render, but of dst only the pixels of a region (NULL: all) are written: with the bits that hf_render of the whole
-// picture writes there. src, depth and dst describe whole pictures. Of dst no byte outside the region is read or written, so
-// its memory may be a tile: data then points to where pixel (0, 0) would be, and stride is the tile's. dst may be src, as for
-// hf_render. The cost grows with the region and with what is blurred into it. Some numbers are of the whole picture:
+// As hf_render, but of dst only the pixels of a region (NULL: all) are written: with the bits that hf_render of the
+// whole picture writes there. src, depth and dst describe whole pictures. Of dst no byte outside the region is read or
+// written, so its memory may be a tile: data then points to where pixel (0, 0) would be, and stride is the tile's. dst
+// may be src, as for hf_render. The cost grows with the region and with what is blurred into it. Some numbers are of
+// the whole picture:
 //   - All depth is looked at, as the largest radius decides how many levels, slices or kernels there are. The gaussian
 //     engine, and the gather with max_radius given or the range model, look at depth around the region alone.
 //   - Scatter reads all colour that is blurred, as the brightest sample decides the units of its sums.
 //   - The gaussian engine reads all colour when sigma is given, as it blurs whole columns and rows.
-// The context holds as much memory as for a whole picture. The report counts what was worked on. run.budget_ms chooses the
-// setting that hf_render would use next, but the time of a region is not counted. With hf_inspect_dump the whole picture is made.
-// Errors as for hf_render, and HF_ERR_ARG for a region that is not in the picture.
+// The context holds as much memory as for a whole picture. The report counts what was worked on. run.budget_ms chooses
+// the setting that hf_render would use next, but the time of a region is not counted. With hf_inspect_dump the whole
+// picture is made. Errors as for hf_render, and HF_ERR_ARG for a region that is not in the picture.
 HF_API int hf_render_region(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                             const struct hf_depth *depth, const struct hf_params *params,
                             const struct hf_region *region);
 
-// What hf_render_region with the same arguments will read of the colour and of the depth: samples outside these rectangles do
-// not count. The rectangles may be larger than need be. With params->focus HF_DERIVE, the depth in the middle of the picture
-// is read as well. This call looks at the depth as hf_plan does, and not at the colour. colour and depth_read may be NULL;
-// their contents before the call are not looked at. On error they are empty. Errors as for hf_render_region.
+// What hf_render_region with the same arguments will read of the colour and of the depth: samples outside these
+// rectangles do not count. The rectangles may be larger than need be. With params->focus HF_DERIVE, the depth in the
+// middle of the picture is read as well. This call looks at the depth as hf_plan does, and not at the colour. colour
+// and depth_read may be NULL; their contents before the call are not looked at. On error they are empty. Errors as for
+// hf_render_region.
 HF_API int hf_region_reads(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                            const struct hf_depth *depth, const struct hf_params *params, const struct hf_region *region,
                            struct hf_region *colour, struct hf_region *depth_read);
 
-// Cancel the call of hf_render, hf_prepare or hf_plan that runs on c now: from any thread, also from callbacks. The call
-// returns HF_ERR_CANCELLED soon: within about a millisecond of work, plus what the system takes to wake a thread, and in a
-// context's first frame to give it memory (up to tens of milliseconds). hf_cancel itself does not wait. The pixels of dst
-// are then unspecified: in place, the picture is lost. The report is all zero and the log says nothing. The context is as
-// good as before, and so is all that it holds. A call that has just finished its picture returns HF_OK all the same. When
-// none runs nothing happens, and a call that begins later is not cancelled; who cannot know whether the call has begun
-// cancels through the progress callback. c must not be closed meanwhile; NULL does nothing.
+// Cancel the call of hf_render, hf_prepare or hf_plan that runs on c now: from any thread, also from callbacks. The
+// call returns HF_ERR_CANCELLED soon: within about a millisecond of work, plus what the system takes to wake a thread,
+// and in a context's first frame to give it memory (up to tens of milliseconds). hf_cancel itself does not wait. The
+// pixels of dst are then unspecified: in place, the picture is lost. The report is all zero and the log says nothing.
+// The context is as good as before, and so is all that it holds. A call that has just finished its picture returns
+// HF_OK all the same. When none runs nothing happens, and a call that begins later is not cancelled; who cannot know
+// whether the call has begun cancels through the progress callback. c must not be closed meanwhile; NULL does nothing.
 HF_API void hf_cancel(struct hf_context *c);
 
-// From now on call fn while hf_render runs on c; fn NULL (default) ends it. done says how much of the frame is done, 0 to 1,
-// as far as earlier frames or a table tell: it never falls, and comes at most about a hundred times. If the call succeeds the
-// last one has done 1, when the picture is whole; a call that returns an error may have no such. If fn returns other than 0
-// the call is cancelled as by hf_cancel, except that what fn returns for 1 is not looked at. fn is called by the thread that
-// called hf_render; with parallel_for by any of the host's threads, never by two at a time. It may call hf_cancel, and no
-// other function with this context. hf_set_progress itself is to be called when nothing runs on c.
+// From now on call fn while hf_render runs on c; fn NULL (default) ends it. done says how much of the frame is done, 0
+// to 1, as far as earlier frames or a table tell: it never falls, and comes at most about a hundred times. If the call
+// succeeds the last one has done 1, when the picture is whole; a call that returns an error may have no such. If fn
+// returns other than 0 the call is cancelled as by hf_cancel, except that what fn returns for 1 is not looked at. fn is
+// called by the thread that called hf_render; with parallel_for by any of the host's threads, never by two at a time.
+// It may call hf_cancel, and no other function with this context. hf_set_progress itself is to be called when nothing
+// runs on c.
 HF_API void hf_set_progress(struct hf_context *c, int (*fn)(void *cookie, float done), void *cookie);
 
-// Take all memory that frames of this size will use, with these parameters and with CoC radii as in this depth, so that the
-// first frame is not late. It renders nothing, and looks neither at dst nor at the colour of src. Errors as for hf_render.
+// Take all memory that frames of this size will use, with these parameters and with CoC radii as in this depth, so that
+// the first frame is not late. It renders nothing, and looks neither at dst nor at the colour of src. Errors as for
+// hf_render.
 HF_API int hf_prepare(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                       const struct hf_depth *depth, const struct hf_params *params);
 
@@ -302,16 +311,16 @@ struct hf_resolved {
     uint32_t reserved;
 };
 
-// What hf_render would make of params (NULL: defaults) for a width x height picture: *filled gets the parameters without
-// HF_DERIVE, *resolved the numbers that follow. If hf_render would fail, *message gets the reason. All three
+// What hf_render would make of params (NULL: defaults) for a width x height picture: *filled gets the parameters
+// without HF_DERIVE, *resolved the numbers that follow. If hf_render would fail, *message gets the reason. All three
 // may be NULL. depth->data may be NULL if there are no pixels yet; then params->focus must not be HF_DERIVE. Errors:
 // HF_ERR_ARG, HF_ERR_FOCUS; then *filled and *resolved are 0 except for their size.
 HF_API int hf_resolve(int width, int height, const struct hf_depth *depth, const struct hf_params *params,
                       struct hf_params *filled, struct hf_resolved *resolved, struct hf_message *message);
 
-// How good a picture has to be. Each quality is a step on a ladder of settings. Each step is slower than the one before, at
-// least 0.2 dB closer to what a ray tracer sees on the mean, and farther from it on no measured scene where either can be
-// chosen.
+// How good a picture has to be. Each quality is a step on a ladder of settings. Each step is slower than the one
+// before, at least 0.2 dB closer to what a ray tracer sees on the mean, and farther from it on no measured scene where
+// either can be chosen.
 enum hf_quality {
     HF_QUALITY_DRAFT,     // the cheapest that blurs as far as any lens: the gather
     HF_QUALITY_STANDARD,  // the cheapest within 1 dB of the best; also for moving pictures
@@ -319,25 +328,26 @@ enum hf_quality {
     HF_QUALITY_BEST,      // the most accurate
 };
 
-// What a choice is expected to cost and how far it is from a ray-traced picture, as `hyperfocal-bench tradeoff` measured it on
-// scenes of 1280 x 720 pixels with CoC radii of up to 57 pixels. Other machines and scenes differ.
+// What a choice is expected to cost and how far it is from a ray-traced picture, as `hyperfocal-bench tradeoff`
+// measured it on scenes of 1280 x 720 pixels with CoC radii of up to 57 pixels. Other machines and scenes differ.
 struct hf_choice {
     size_t size;  // sizeof(struct hf_choice)
-    // Root mean square distance of the display-encoded pictures, 0 to 1: geometric mean over the scenes, and the worst scene.
+    // Root mean square distance of the display-encoded pictures, 0 to 1: geometric mean over the scenes, and the worst
+    // scene.
     float error, worst;
     float ms;  // milliseconds of a megapixel
     uint32_t reserved;
-    // Why a cheaper setting of this quality or error was passed over, as the rest of "it ...": NULL if none was. Lives as long
-    // as the library.
+    // Why a cheaper setting of this quality or error was passed over, as the rest of "it ...": NULL if none was. Lives
+    // as long as the library.
     const char *why;
 };
 
-// Set the engine of *params and the engine's knobs to those of a quality, and leave all other fields as they are. height: of
-// the pictures, pixels. Only the type of depth counts (NULL: distances). A step that does not reach as far as the blur asked
-// for, or does not draw params->aperture, is passed over for the next better one that does. The blur asked for is max_radius.
-// Without max_radius it is 12 pixels at 1080 lines with the range model, and any radius with a lens or HF_DEPTH_COC: the
-// gaussian engine, whose blur has one width everywhere (twice its standard deviation), is never chosen then. choice and message
-// may be NULL. Errors: HF_ERR_ARG.
+// Set the engine of *params and the engine's knobs to those of a quality, and leave all other fields as they are.
+// height: of the pictures, pixels. Only the type of depth counts (NULL: distances). A step that does not reach as far
+// as the blur asked for, or does not draw params->aperture, is passed over for the next better one that does. The blur
+// asked for is max_radius. Without max_radius it is 12 pixels at 1080 lines with the range model, and any radius with a
+// lens or HF_DEPTH_COC: the gaussian engine, whose blur has one width everywhere (twice its standard deviation), is
+// never chosen then. choice and message may be NULL. Errors: HF_ERR_ARG.
 HF_API int hf_choose_quality(int height, const struct hf_depth *depth, struct hf_params *params,
                              enum hf_quality quality, struct hf_choice *choice, struct hf_message *message);
 // The same by the largest acceptable error, as in hf_choice: more than 0, at most 1. It chooses the cheapest step whose
@@ -348,15 +358,16 @@ HF_API int hf_choose_error(int height, const struct hf_depth *depth, struct hf_p
 // What a frame calls for, and what became of it.
 struct hf_report {
     size_t size;  // sizeof(struct hf_report)
-    // Cheaper settings that run.budget_ms made the library take: 0, as asked for; each step is cheaper. And of how many steps;
-    // 0 without a budget.
+    // Cheaper settings that run.budget_ms made the library take: 0, as asked for; each step is cheaper. And of how many
+    // steps; 0 without a budget.
     int budget_step, budget_steps;
     // The largest CoC radii in front of the focus and behind it, full-resolution pixels.
     float near_radius, far_radius;
     uint64_t memory;  // bytes of buffers that the frame needs
-    // Bytes that the context will hold when hf_render has made this frame, from its allocator, what it holds now included: to
-    // the byte, unless hf_inspect_dump is in use, or the frame is made in place and has samples that are not finite. hf_plan has
-    // taken the tables and the scratch of the threads by then, but nothing as large as the frame.
+    // Bytes that the context will hold when hf_render has made this frame, from its allocator, what it holds now
+    // included: to the byte, unless hf_inspect_dump is in use, or the frame is made in place and has samples that are
+    // not finite. hf_plan has taken the tables and the scratch of the threads by then, but nothing as large as the
+    // frame.
     uint64_t memory_needed;
     double predicted_ms;  // expected time of the whole frame
 
@@ -370,19 +381,20 @@ struct hf_report {
     uint64_t clamped;  // samples clamped: of the output to the range of its format, of the input as the engine needs it
 };
 
-// What hf_render would do with the same arguments: it looks at the depth only and renders nothing. report may be NULL. Errors
-// as for hf_render.
+// What hf_render would do with the same arguments: it looks at the depth only and renders nothing. report may be NULL.
+// Errors as for hf_render.
 HF_API int hf_plan(struct hf_context *c, const struct hf_image *dst, const struct hf_image *src,
                    const struct hf_depth *depth, const struct hf_params *params, struct hf_report *report);
 
 // What the last hf_render, hf_plan or hf_prepare did. If there was none, or it failed, all fields except size are 0.
 // Errors: HF_ERR_ARG.
 HF_API int hf_get_report(struct hf_context *c, struct hf_report *report);
-// What that frame was rendered with: the parameters without HF_DERIVE, of a cheaper setting where the budget chose one, and
-// what they came to. aperture.picture is NULL, because the caller may have freed it. Both may be NULL. Errors: HF_ERR_ARG.
-HF_API int hf_get_used(struct hf_context *c, struct hf_params *params, struct hf_resolved *resolved);
-// Why the last call with this context that failed did so. Before the first one, error is HF_OK and the texts are "". Errors:
+// What that frame was rendered with: the parameters without HF_DERIVE, of a cheaper setting where the budget chose one,
+// and what they came to. aperture.picture is NULL, because the caller may have freed it. Both may be NULL. Errors:
 // HF_ERR_ARG.
+HF_API int hf_get_used(struct hf_context *c, struct hf_params *params, struct hf_resolved *resolved);
+// Why the last call with this context that failed did so. Before the first one, error is HF_OK and the texts are "".
+// Errors: HF_ERR_ARG.
 HF_API int hf_get_problem(const struct hf_context *c, struct hf_message *message);
 
 // Families of words: the names that command lines and files use for values.
@@ -407,10 +419,11 @@ enum hf_names {
     HF_NAMES_LAYERS,        // standard, draft, high, best: enum hf_layers_quality
 };
 
-// The word for a value. NULL for a value or a family that does not exist. Values of all families begin at 0 and have no gaps.
+// The word for a value. NULL for a value or a family that does not exist. Values of all families begin at 0 and have no
+// gaps.
 HF_API const char *hf_name(enum hf_names of, int value);
-// The value of a word. Returns HF_OK with the value in *value, or HF_ERR_ARG for a word that does not exist. "chapter" is an
-// old word for packed.
+// The value of a word. Returns HF_OK with the value in *value, or HF_ERR_ARG for a word that does not exist. "chapter"
+// is an old word for packed.
 HF_API int hf_value(enum hf_names of, const char *name, int *value);
 // The same as hf_name(HF_NAMES_ENGINE, engine).
 HF_API const char *hf_engine_name(enum hf_engine engine);
