@@ -272,14 +272,123 @@ def try_stereo():
     check("the views differ", np.abs(written[0] - written[1]).max() > 0.1)
 
 
+def try_together():
+    """All views in one file, in each way that Blender has: its own file with the sharp views says what belongs where."""
+    ways = [("OPEN_EXR", "MULTIVIEW", ""), ("OPEN_EXR", "STEREO_3D", "SIDEBYSIDE"), ("OPEN_EXR", "STEREO_3D", "TOPBOTTOM"),
+            ("OPEN_EXR", "STEREO_3D", "ANAGLYPH"), ("OPEN_EXR", "STEREO_3D", "INTERLACE")]
+    for kind, way, mode in ways:
+        scene = scene_with_camera(lamp=False)
+        scene.cycles.samples = 4
+        scene.render.use_multiview = True
+        scene.camera.data.hyperfocal.use = True
+        scene.camera.data.stereo.interocular_distance = 0.5
+        settings = scene.render.image_settings
+        settings.file_format, settings.color_depth = kind, "32"
+        settings.views_format = way
+        if mode:
+            settings.stereo_3d_format.display_mode = mode
+        scene.render.filepath = os.path.join(folder, f"one{way}{mode}")
+        bpy.ops.render.render(write_still=True)
+        path = f"{scene.render.filepath}.exr"
+        sides = [os.path.join(folder, f"one{way}{mode}_{side}.sharp.exr") for side in "LR"]
+        check(f"{way} {mode}: {scene.camera.data.hyperfocal.error}", not scene.camera.data.hyperfocal.error)
+        check(f"{way} {mode}: both sharp views are kept", all(os.path.exists(s) for s in sides))
+        given = lens.parameters(scene, scene.camera)
+        left, right = (render.defocus(render.picture(s), given) for s in sides)
+        made = exr.read(path)
+        want = {"SIDEBYSIDE": lambda i: np.hstack([left[..., i], right[..., i]]),
+                "TOPBOTTOM": lambda i: np.vstack([left[..., i], right[..., i]]),
+                "ANAGLYPH": lambda i: (right if i else left)[..., i]}.get(mode)
+        if way == "MULTIVIEW":
+            same = all(np.array_equal(made[c], left[..., i]) and np.array_equal(made[f"right.{c}"], right[..., i])
+                       for i, c in enumerate("RGBA"))
+        elif want:
+            same = all(made[c].shape == want(i).shape and np.array_equal(made[c], want(i)) for i, c in enumerate("RGB"))
+        else:  # every other row is of one view
+            even, odd = made["G"][0::2], made["G"][1::2]
+            same = any(np.array_equal(even, a[0::2, :, 1]) and np.array_equal(odd, b[1::2, :, 1])
+                       for a, b in ((left, right), (right, left)))
+        check(f"{way} {mode}: the file has both defocused views", same)
+        check(f"{way} {mode}: the views differ", np.abs(left - right).max() > 0.1)
+        check(f"{way} {mode}: no other image stays", [i.name for i in bpy.data.images if i.name.startswith("both")] == [])
+
+
+def try_film():
+    """Film transparent, a border, a border that crops, two view layers: the picture is that of the sharp one's colour and depth."""
+    def transparent(scene):
+        scene.render.film_transparent = True
+        for stripe in [o for o in scene.objects if o.dimensions.z > 10]:
+            bpy.data.objects.remove(stripe)
+
+    def border(scene):
+        scene.render.use_border = True
+        scene.render.border_min_x, scene.render.border_max_x = 0.25, 0.75
+        scene.render.border_min_y, scene.render.border_max_y = 0.2, 0.9
+
+    def crop(scene):
+        border(scene)
+        scene.render.use_crop_to_border = True
+
+    def two_layers(scene):
+        scene.view_layers.new("Second")
+
+    for change in (transparent, border, crop, two_layers):
+        scene = scene_with_camera(lamp=False)
+        change(scene)
+        scene.cycles.samples = 4
+        scene.camera.data.hyperfocal.use = True
+        scene.render.image_settings.file_format = "OPEN_EXR"
+        scene.render.image_settings.color_mode = "RGBA"
+        scene.render.image_settings.color_depth = "32"
+        scene.render.filepath = os.path.join(folder, change.__name__)
+        bpy.ops.render.render(write_still=True)
+        name = change.__name__
+        check(f"{name}: {scene.camera.data.hyperfocal.error}", not scene.camera.data.hyperfocal.error)
+        made = exr.read(f"{scene.render.filepath}.exr", lambda n: n in "RGBA")
+        sharp, depth = render.picture(f"{scene.render.filepath}.sharp.exr")
+        part = np.s_[18:144, 80:240] if change is border else np.s_[:, :]
+        blurred = sharp.copy()
+        blurred[part] = render.defocus((sharp[part], depth[part]), lens.parameters(scene, scene.camera))
+        print(f"{name}: {sharp.shape}, alpha {sharp[..., 3].min():.3g} to {sharp[..., 3].max():.3g}, depth {depth.min():.4g} to "
+              f"{depth.max():.4g}, blurred by up to {np.abs(blurred - sharp).max():.3g}", flush=True)
+        check(f"{name}: the file has the defocused picture", all(np.array_equal(made[c], blurred[..., i]) for i, c in enumerate("RGBA")))
+        check(f"{name}: it is not the sharp one", np.abs(blurred - sharp).max() > 0.1)
+        check(f"{name}: all is finite", np.isfinite(blurred).all())
+        if change is border:
+            sharp[part] = 0
+            check("border: nothing is rendered beyond it, and nothing blurred", not sharp.any())
+        if change is transparent:
+            check("transparent: alpha is blurred", ((blurred[..., 3] > 0.01) & (blurred[..., 3] < 0.99)).sum() > 500)
+
+
 def try_refocus():
     scene = scene_with_camera(lamp=False)
     render_color(scene, 4, 1, False)
-    before = np.array(bpy.data.images[addon.IMAGE].pixels[:])
+    def shown():
+        return np.array(bpy.data.images[addon.IMAGE].pixels[:])
+
+    before = shown()
     scene.camera.data.dof.focus_distance = 12
     bpy.context.view_layer.update()
+    addon._last["seconds"] = 0
     addon.catch_up()
-    check("turning the focus changes the picture without a render", not np.array_equal(before, bpy.data.images[addon.IMAGE].pixels[:]))
+    after = shown()
+    check("turning the focus changes the picture without a render", not np.array_equal(before, after))
+    check("and is done", not bpy.app.timers.is_registered(addon.settle))
+    # On a slow machine a draft comes first.
+    scene.camera.data.dof.focus_distance = 11
+    bpy.context.view_layer.update()
+    addon._last["seconds"] = 2 * addon.PROMPT
+    addon.catch_up()
+    draft = shown()
+    check("a draft of a slow picture comes first", not np.array_equal(draft, after) and bpy.app.timers.is_registered(addon.settle))
+    addon.catch_up()
+    addon.settle()
+    bpy.app.timers.unregister(addon.settle)
+    settled = shown()
+    given = lens.parameters(scene, scene.camera)
+    check("the picture follows", np.array_equal(settled, render.defocus(addon._last["pictures"][""], given)[::-1].ravel()))
+    check("and is another than the draft", not np.array_equal(settled, draft))
 
 
 def try_refused():
@@ -357,7 +466,7 @@ try:
     if "time" in names:
         time_refocus()
     if not names or "states" in names:
-        for rest in (try_animation, try_stereo, try_refocus, try_refused, try_interruptions):
+        for rest in (try_animation, try_stereo, try_together, try_film, try_refocus, try_refused, try_interruptions):
             rest()
 except Exception as error:  # Blender would go on without a word
     import traceback

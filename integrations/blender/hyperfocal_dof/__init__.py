@@ -2,13 +2,14 @@
 """Render once, refocus for ever: depth of field after the render, from the scene's camera."""
 import os
 import shutil
+import tempfile
 import time
 
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 
-from . import lens, render
+from . import exr, lens, render
 
 bl_info = {
     "name": "hyperfocal",
@@ -21,6 +22,8 @@ bl_info = {
 }
 
 IMAGE = "hyperfocal"
+# A picture that took longer than this comes after a draft, when nothing has changed for REST. Seconds.
+PROMPT, REST = 0.15, 0.25
 # What the render changed: functions that put it back. The last picture, and what it was defocused with.
 _undo = []
 _last = {}
@@ -34,7 +37,7 @@ class HyperfocalSettings(bpy.types.PropertyGroup):
     quality: bpy.props.EnumProperty(
         name="Quality", default="STANDARD", description="How accurate the blur is, and how slow",
         items=[("DRAFT", "Draft", "The fastest"), ("STANDARD", "Standard", "Close to the best"),
-               ("HIGH", "High", "Closer still"), ("BEST", "Best", "The most accurate")])
+               ("BEST", "Best", "The most accurate")])
     error: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
 
@@ -149,12 +152,15 @@ def show(color, suffix=""):
     return image
 
 
-def refocus(scene):
-    """Blur the last render anew by the camera as it is now, all its views."""
+def refocus(scene, quick=False):
+    """Blur the last render anew by the camera as it is now, all its views. quick: as a draft."""
     given = lens.parameters(scene, scene.camera)
+    begun = time.perf_counter()
     for suffix, picture in _last["pictures"].items():
-        show(render.defocus(picture, given), suffix)
+        show(render.defocus(picture, lens.drafted(given) if quick else given, _last["part"]), suffix)
     _last["given"] = given
+    if not quick:
+        _last["seconds"] = time.perf_counter() - begun
 
 
 @persistent
@@ -169,6 +175,7 @@ def rendered(scene, *_):
             if os.path.exists(old):
                 os.remove(old)
         save_sharp(scene, path)
+        _last["part"] = lens.border(scene)
         _last["pictures"] = {end: render.picture(with_suffix(path, end)) for end in views(scene).values()}
         # The camera's own switch is off for the render: what counts is here.
         refocus(scene)
@@ -191,30 +198,63 @@ def written(scene, *_):
     """Replace the sharp frame, which Blender has just written, at once by the defocused one; that of each view."""
     if not active(scene) or "pictures" not in _last:
         return
+    images = {view: bpy.data.images.get(IMAGE + suffix) for view, suffix in views(scene).items()}
+    if not all(images.values()):
+        return
     if scene.render.use_multiview and scene.render.image_settings.views_format != "INDIVIDUAL":
-        say(scene, "A frame with all views in one file stays sharp: set the output's Views Format to Individual.")
+        path = written_path(scene, "", "")
+        if path:
+            replace(scene, path, list(views(scene).values()), lambda new: save_together(scene, images, new))
         return
     for view, suffix in views(scene).items():
-        image, path = bpy.data.images.get(IMAGE + suffix), written_path(scene, view, suffix)
-        if image and path:
-            replace(scene, image, path, with_suffix(sharp_path(), suffix))
+        path = written_path(scene, view, suffix)
+        if path:
+            replace(scene, path, [suffix], lambda new, image=images[view]: image.save_render(new, scene=scene))
 
 
-def replace(scene, image, path, sharp):
-    """Replace a file by the image, and keep the sharp picture beside it."""
+def replace(scene, path, suffixes, save):
+    """Replace a file by what save(path) writes, and keep the sharp pictures beside it."""
     folder, name = os.path.split(path)
-    new, keep = os.path.join(folder, ".hyperfocal-" + name), os.path.splitext(path)[0] + ".sharp.exr"
+    new, alone = os.path.join(folder, ".hyperfocal-" + name), len(suffixes) == 1
+    kept = {suffix: os.path.splitext(path)[0] + ("" if alone else suffix) + ".sharp.exr" for suffix in suffixes}
     try:
-        shutil.copyfile(sharp, keep + ".new")
-        os.replace(keep + ".new", keep)
-        image.save_render(new, scene=scene)
+        for suffix, keep in kept.items():
+            shutil.copyfile(with_suffix(sharp_path(), suffix), keep + ".new")
+            os.replace(keep + ".new", keep)
+        save(new)
         os.replace(new, path)
     except (OSError, RuntimeError) as error:
         say(scene, f"{path}: {error}")
     finally:
-        for left in (new, keep + ".new"):
+        for left in (new, *(keep + ".new" for keep in kept.values())):
             if os.path.exists(left):
                 os.remove(left)
+
+
+def save_together(scene, images, path):
+    """All views in one file: the views of an EXR, or Stereo 3D as the output's settings say."""
+    if scene.render.image_settings.views_format == "MULTIVIEW":
+        render.write_views(path, {view: pixels_of(image) for view, image in images.items()})
+        return
+    # Blender puts the halves together when the image has both views, and these only a file can give it.
+    with tempfile.TemporaryDirectory() as folder:
+        for side, image in zip("LR", images.values()):
+            exr.write(os.path.join(folder, f"both_{side}.exr"), dict(zip("RGBA", np.moveaxis(pixels_of(image), 2, 0))))
+        both = bpy.data.images.load(os.path.join(folder, "both_L.exr"))
+        try:
+            both.use_multiview, both.views_format = True, "INDIVIDUAL"
+            both.filepath = os.path.join(folder, "both.exr")
+            both.reload()
+            both.save_render(path, scene=scene)
+        finally:
+            bpy.data.images.remove(both)
+
+
+def pixels_of(image):
+    """(height, width, 4), the top row first."""
+    pixels = np.empty(image.size[0] * image.size[1] * 4, np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels.reshape(image.size[1], image.size[0], 4)[::-1]
 
 
 @persistent
@@ -237,17 +277,31 @@ def after_saving(*_):
 
 @persistent
 def changed(scene, *_):
-    """The camera was turned after a render: refocus, when no more changes come for a moment."""
+    """The camera was turned after a render: refocus."""
     if not _rendering and "pictures" in _last and active(scene) and not lens.refusal(scene.camera):
         if lens.parameters(scene, scene.camera) != _last.get("given") and not bpy.app.timers.is_registered(catch_up):
             bpy.app.timers.register(catch_up, first_interval=0.02)
 
 
 def catch_up():
+    """Follow the camera. Where this machine needs too long, a draft comes first, and the picture when the camera rests."""
+    if bpy.app.timers.is_registered(settle):
+        bpy.app.timers.unregister(settle)
+    slow = _last.get("seconds", 0) > PROMPT
+    try_refocus(quick=slow)
+    if slow:
+        bpy.app.timers.register(settle, first_interval=REST)
+
+
+def settle():
+    try_refocus(quick=False)
+
+
+def try_refocus(quick):
     scene = bpy.context.scene
     try:
         if active(scene) and "pictures" in _last:
-            refocus(scene)
+            refocus(scene, quick)
     except (ValueError, RuntimeError) as error:
         say(scene, str(error))
 
@@ -317,6 +371,9 @@ def register():
 
 def unregister():
     put_back()
+    for timer in (catch_up, settle):
+        if bpy.app.timers.is_registered(timer):
+            bpy.app.timers.unregister(timer)
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)
     del bpy.types.Camera.hyperfocal

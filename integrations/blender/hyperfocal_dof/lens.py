@@ -2,6 +2,8 @@
 """The scene's camera as hyperfocal's parameters: the lens that Cycles has."""
 import math
 
+import numpy as np
+
 
 def refusal(camera):
     """Why this camera cannot be used, as one sentence; None if it can."""
@@ -33,6 +35,20 @@ def size(scene):
             int(render.resolution_y * render.resolution_percentage / 100))
 
 
+def border(scene):
+    """The rows and columns of the picture that are rendered, counted from the top left; None: all that the picture has."""
+    render = scene.render
+    if not render.use_border or render.use_crop_to_border:
+        return None
+    width, height = size(scene)
+
+    def pixel(part, pixels):
+        return int(np.float32(part) * np.float32(pixels))  # as Blender rounds
+
+    return (slice(height - pixel(render.border_max_y, height), height - pixel(render.border_min_y, height)),
+            slice(pixel(render.border_min_x, width), pixel(render.border_max_x, width)))
+
+
 def sensor_width(scene, data):
     """Of the part of the sensor that the whole picture's width shows, mm."""
     width, height = size(scene)
@@ -62,11 +78,15 @@ def parameters(scene, camera):
         "rotation": -math.degrees(dof.aperture_rotation) if blades else 0.0,
         "squeeze": min(max(dof.aperture_ratio, 0.25), 4),
     }
-    if data.hyperfocal.quality in ("HIGH", "BEST"):
-        given["quality"] = data.hyperfocal.quality.lower()
-    elif data.hyperfocal.quality == "DRAFT":
-        given.update({"engine": "gather"} if given["squeeze"] == 1 else {"quality": "draft"})
-    return given
+    if data.hyperfocal.quality == "BEST":
+        given["quality"] = "best"
+    return drafted(given) if data.hyperfocal.quality == "DRAFT" else given
+
+
+def drafted(given):
+    """The same parameters for the fastest picture."""
+    kept = {name: value for name, value in given.items() if name not in ("quality", "engine")}
+    return dict(kept, **({"engine": "gather"} if given["squeeze"] == 1 else {"quality": "draft"}))
 
 
 OPTIONS = {"focus": "focus", "f_number": "fstop", "focal_length": "focal-length", "sensor_width": "sensor-width",

@@ -2,6 +2,7 @@
 """From a rendered multilayer EXR to a defocused picture: by hyperfocal's Python module, or else by its command."""
 import os
 import shutil
+import struct
 import subprocess
 import tempfile
 
@@ -40,16 +41,30 @@ def picture(path):
     return np.dstack(color).astype(np.float32, copy=False), np.minimum.reduce(depths)
 
 
-def defocus(picture_of, given):
-    """Colour and depth to a defocused colour."""
+def defocus(picture_of, given, part=None):
+    """Colour and depth to a defocused colour. part: the rows and columns that were rendered; nothing else is touched."""
     global _context
     color, depth = picture_of
+    if part:
+        out = np.empty(color.shape, np.float32)[::-1]
+        out[:] = color
+        out[part] = defocus((color[part], depth[part]), given)
+        return out
     if module:
         _context = _context or module.Context()
         # Blender's rows begin at the bottom: show() then needs no copy.
         out = np.empty(color.shape, np.float32)[::-1]
         return _context.defocus(color, depth, out=out, **given)
     return by_command(color, depth, given)
+
+
+def write_views(path, views):
+    """One EXR with the views {name: (height, width, 4)}, the first of which has channels without a view's name."""
+    names = list(views)
+    listed = b"".join(struct.pack("<i", len(n.encode())) + n.encode() for n in names)
+    channels = {("" if view == names[0] else f"{view}.") + c: color[..., i]
+                for view, color in views.items() for i, c in enumerate("RGBA")}
+    exr.write(path, channels, [("multiView", "stringvector", listed)])
 
 
 def by_command(color, depth, given):
