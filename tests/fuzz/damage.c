@@ -22,6 +22,7 @@ struct source {
     const char *name;
     uint8_t *data;
     size_t size, table;  // where the table of chunks begins
+    int deep;
 };
 
 static const char *program;
@@ -74,13 +75,18 @@ static struct outcome run(const char *const *words)
 
 // ---- files to damage ----
 
-static void add_source(const char *name)
+static void add_file(const char *name, const char *path)
 {
     struct source *s = &sources[source_count++];
     s->name = name;
-    s->data = slurp(in_folder(name), &s->size);
+    s->data = slurp(path, &s->size);
     s->table = header_size(s->data, s->size);
     CHECK_MSG(s->size > 200 && s->table < s->size, "%s: no file to damage", name);
+}
+
+static void add_source(const char *name)
+{
+    add_file(name, in_folder(name));
 }
 
 // Core writes the compressions that it can; the command makes the others from those.
@@ -116,6 +122,11 @@ static void make_sources(void)
         else if (CHECK_MSG(o.status == 0, "%s cannot be made: %s", names[i], o.said))
             add_source(names[i]);
     }
+    add_file("deep-none.exr", CORPUS "deep-none.exr");
+    add_file("deep-rle-tiled.exr", CORPUS "deep-rle-tiled.exr");
+    add_file("deep-zips-half.exr", CORPUS "deep-zips-half.exr");
+    for (int i = 1; i <= 3; i++)
+        sources[source_count - i].deep = 1;
 }
 
 // ---- damage ----
@@ -154,7 +165,8 @@ static size_t damage(const struct source *s, int kind, uint8_t *d)
             break;
         case 3:  // the sizes that a chunk says, and where it says it lies
             memcpy(&chunk, s->data + entry, 8);
-            put_number(d, size, (chunk < size ? (size_t)chunk : s->table) + 4 * (rnd() % 5), 4);
+            put_number(d, size, (chunk < size ? (size_t)chunk : s->table) + 4 * (rnd() % (s->deep ? 12 : 5)),
+                       s->deep && rnd() % 2 ? 8 : 4);
             break;
         case 4:
             d[s->table + rnd() % after] ^= (uint8_t)(1u << rnd() % 8);
@@ -216,8 +228,9 @@ static void try_one(uint64_t number)
     spill(bad, d, damage(s, kind, d));
     free(d);
     spill(out, "old", 3);
-    const struct outcome o = run((const char *[]){bad, "-o", out, "--engine", engines[rnd() % 5], "--focus", "5",
-                                                  "--range", "3", "--max-radius", "8", "--threads", "2", NULL});
+    const struct outcome o =
+        run((const char *[]){bad, "-o", out, "--engine", engines[s->deep ? 0 : rnd() % 5], "--focus", "5", "--range",
+                             "3", "--max-radius", "8", "--threads", "2", NULL});
     size_t size;
     uint8_t *now = slurp(out, &size);
     const int kept = size == 3 && !memcmp(now, "old", 3), code = WIFEXITED(o.status) ? WEXITSTATUS(o.status) : -1;
