@@ -379,6 +379,8 @@ struct hf_report {
     uint64_t depth_repaired;                         // depth samples that were NaN
     uint64_t no_surface;                             // pixels without a surface
     uint64_t clamped;  // samples clamped: of the output to the range of its format, of the input as the engine needs it
+    // With layers.guessed: the share of the light of all rendered pixels that was guessed, 0 to 1; else 0.
+    double guessed;
 };
 
 // What hf_render would do with the same arguments: it looks at the depth only and renders nothing. report may be NULL.

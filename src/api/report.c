@@ -34,7 +34,8 @@ int hf_get_report(struct hf_context *c, struct hf_report *report)
                                   .colour_repaired = r->colour_repaired,
                                   .depth_repaired = r->depth_repaired,
                                   .no_surface = r->no_surface,
-                                  .clamped = r->clamped};
+                                  .clamped = r->clamped,
+                                  .guessed = r->guessed};
     return fill(c, report, &own, &hf_sized_report, "report");
 }
 

@@ -30,6 +30,8 @@ static void add_counts(struct hf_counts *sum, const struct hf_counts *c)
     sum->depth_repaired += c->depth_repaired;
     sum->no_surface += c->no_surface;
     sum->clamped += c->clamped;
+    sum->guessed += c->guessed;
+    sum->looked_at += c->looked_at;
     sum->near_max = c->near_max > sum->near_max ? c->near_max : sum->near_max;
     sum->far_max = c->far_max > sum->far_max ? c->far_max : sum->far_max;
     sum->radius_min = c->radius_min < sum->radius_min ? c->radius_min : sum->radius_min;
@@ -156,6 +158,7 @@ void hf_report_frame(struct hf_context *c, double total_ms)
     r->depth_repaired = n.depth_repaired;
     r->no_surface = n.no_surface;
     r->clamped = n.clamped;
+    r->guessed = n.looked_at ? (double)n.guessed * 0x1p-24 / (double)n.looked_at : 0;
     for (int i = 0; i < r->passes; i++) {
         for (int k = 0; k < c->threads; k++) {
             r->pass[i].ms += (double)c->workers[k].ns[i] * 1e-6 / c->threads;

@@ -111,9 +111,10 @@ struct hf_found {
 struct hf_counts {
     uint64_t near_pixels, far_pixels, sharp_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
-    float radius_min, radius_max;      // of passes that make signed radii; before any, HUGE_VALF and -HUGE_VALF
-    float near_max, far_max;           // of those that make near and far CoC
-    float brightest, alpha_min;        // of the colour, if somebody asks
+    uint64_t guessed, looked_at;   // shares of light that was guessed, in 2^-24ths of a pixel, and of how many pixels
+    float radius_min, radius_max;  // of passes that make signed radii; before any, HUGE_VALF and -HUGE_VALF
+    float near_max, far_max;       // of those that make near and far CoC
+    float brightest, alpha_min;    // of the colour, if somebody asks
     uint64_t near_groups, far_groups;  // bit hf_group(x): there is CoC in that group of lanes of a row
     struct hf_found near, far;         // and of a chunk
     // Of blurred pixels, if the engine's first sweep notes it: the largest absolute sample, and which exponents there are,

@@ -41,6 +41,7 @@ struct hf_frame_report {
     size_t memory_held;
     uint64_t near_pixels, sharp_pixels, far_pixels;
     uint64_t colour_repaired, depth_repaired, no_surface, clamped;
+    double guessed;
 };
 
 #endif

@@ -145,11 +145,23 @@ static float guessed_at(const struct picture *p, int x)
     return p->rgba[4 * (H / 2 * W + x)];
 }
 
+// The report has the mean of the shares, each to a 2^-24th.
+static void check_report_of(const struct picture *p)
+{
+    struct hf_report report = {.size = sizeof report};
+    double sum = 0;
+    for (int i = 0; i < N; i++)
+        sum += p->rgba[4 * i];
+    CHECK_INT(hf_get_report(context, &report), HF_OK);
+    CHECK_MSG(fabs(report.guessed - sum / N) <= 0x1p-24, "the report has %g, the picture %g", report.guessed, sum / N);
+}
+
 static int render_guessed(struct picture *to, const struct hf_layer *layers, int count)
 {
     params.layers.guessed = 1;
     const int status = render(to, layers, count);
     params.layers.guessed = 0;
+    check_report_of(to);
     return status;
 }
 

@@ -106,17 +106,41 @@ else
 fi
 
 # ---- --guessed
-good both.exr -o o.exr $look --guessed --json j.json
-good bar.exr --over wall.exr -o o.exr $look --guessed --json k.json
+good both.exr -o o.exr $look --quiet --guessed --json j.json
+good bar.exr --over wall.exr -o o.exr $look --quiet --guessed --json k.json
 python3 - <<'PYTHON'
 import json
 one, two = (json.load(open(n))['views'][0]['guessed'] for n in ('j.json', 'k.json'))
 raise SystemExit(not 0 <= two < one < .5)
 PYTHON
 result "less is guessed where more is shown" $?
-good both.exr -o c.exr $look --guessed-image g.exr
+good both.exr -o c.exr $look --quiet --guessed-image g.exr
 same c.exr flat.exr R G B && grep -q guessed g.exr
 result "--guessed-image, and the picture stays" $?
+good both.exr -o d.exr $look --quiet --guessed
+! grep -q guessed c.exr && same d.exr d.exr guessed && same d.exr c.exr R G B A Z id
+result "OUTPUT has a channel guessed, and all else that INPUT has" $?
+blur='--focus 4 --focal-length 50 --fstop 0.5 --max-radius 8'
+run file.exr --layer Near,Far --merge -o d.exr $blur --guessed --json j.json
+python3 - <<'PYTHON'
+import json
+import struct
+from exr import read
+shares = struct.unpack('<2560f', read('d.exr')['Near.guessed'])
+said = json.load(open('j.json'))['views'][0]
+# The report adds up 2^-24ths, rounded down.
+raise SystemExit(abs(sum(shares) / 2560 - said['guessed']) > 1e-6 or not 0 < said['guessed_beyond'] <= said['guessed'])
+PYTHON
+result "of a layer the channel is beside it, and --json has its mean" $?
+contains "$dir/err" "of the picture rests on guesses; overscan of" && ! contains "$dir/err" "a second layer"
+result "with a further layer only the border is guessed" $?
+run both.exr -o d.exr $blur --guessed
+contains "$dir/err" "a second layer would help"
+result "and without, what is hidden" $?
+good d.exr -o e.exr $blur --guessed --quiet
+good both.exr -o f.exr $blur --guessed --quiet
+! same d.exr e.exr guessed && same d.exr f.exr guessed && same e.exr e.exr R
+result "a channel that is there is replaced" $?
 bad 1 "--guessed|layers" both.exr -o o.exr $look --guessed --engine gather
 
 # ---- shots
@@ -126,6 +150,11 @@ result "each frame has its own further picture" $?
 run bar.####.exr --over wall.####.exr -o o.####.exr --resume $look
 contains "$dir/err" "0 done, 2 there already"
 result "--resume skips what is there" $?
+run bar.####.exr --over wall.####.exr -o o.####.exr --resume --guessed $look
+contains "$dir/err" "2 done, 0 there already" && grep -q "frame [12]: .* of the picture rests on guesses" "$dir/err" &&
+    same o.0001.exr b.exr R G B && grep -q guessed o.0002.exr
+result "--guessed in a shot: a sentence, and frames without the channel are made again" $?
+run bar.####.exr --over wall.####.exr -o o.####.exr --resume --quiet $look
 cp bar2.exr wall.0002.exr
 run bar.####.exr --over wall.####.exr -o o.####.exr --resume --log log.jsonl $look
 contains "$dir/err" "1 done, 1 there already" && contains log.jsonl '"wall.0002.exr"'

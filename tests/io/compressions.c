@@ -18,7 +18,7 @@ static const char *note_of(const char *path, const char *compression)
     if (!CHECK_MSG(!hf_io_open(&f, path, NULL, &err), "%s", err.message))
         return "";
     struct planes planes = make_planes(hf_io_view(f, 0), &ignored);
-    const struct hf_io_result r = {0, {planes.p[0], planes.p[1], planes.p[2], NULL}};
+    const struct hf_io_result r = {.view = 0, .planes = {planes.p[0], planes.p[1], planes.p[2], NULL}};
     const struct hf_io_job job = {
         .path = in_folder("note.exr"), .results = &r, .result_count = 1, .compression = compression};
     CHECK_MSG(!hf_io_write(f, &job, &written, &err), "%s", err.message);

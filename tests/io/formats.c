@@ -139,7 +139,7 @@ static void format_trip(const char *name, float bound, bool alpha)
     CHECK(!hf_io_write_planes(exr, &planes, &err));
     if (!CHECK_MSG(!hf_io_open(&f, exr, NULL, &err), "%s", err.message))
         return;
-    const struct hf_io_result r = {0, {NULL, data[1], NULL, NULL}};
+    const struct hf_io_result r = {.view = 0, .planes = {NULL, data[1], NULL, NULL}};
     const struct hf_io_job job = {.path = path, .results = &r, .result_count = 1};
     CHECK_MSG(!hf_io_write(f, &job, NULL, &err), "%s", err.message);
     hf_io_close(&f);

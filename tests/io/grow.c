@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A data window that grows: old samples keep their places, new ones are what the header says, for every storage.
+// A data window that grows, and a channel that is added: old samples keep their places, new ones are what the header says, for every storage.
 #include "io/tests.h"
 
 #include <math.h>
@@ -33,9 +33,10 @@ static void compare_grown(const char *name, const uint8_t *old, const uint8_t *n
     CHECK_MSG(!bad, "%s: %d samples are wrong", name, bad);
 }
 
-static void grow_one(const struct part *parts, const char *compression)
+static const int larger[4] = {5, 3, 40, 2};
+
+static void grow_one(const struct part *parts, const char *compression, const int grow[4])
 {
-    static const int grow[4] = {5, 3, 40, 2};
     const char *path = in_folder("small.exr"), *target = in_folder("grown.exr");
     struct hf_io_error err = {.message = ""};
     struct hf_io_file *f;
@@ -45,13 +46,16 @@ static void grow_one(const struct part *parts, const char *compression)
     struct hf_io_box box = hf_io_view(f, 0)->data_window;
     box = (struct hf_io_box){box.x0 - grow[0], box.y0 - grow[1], box.x1 + grow[2], box.y1 + grow[3]};
     const size_t n = (size_t)(box.x1 - box.x0) * (size_t)(box.y1 - box.y0);
-    float *plane = allocate(n * sizeof(float));
-    for (size_t i = 0; i < n; i++)
+    float *plane = allocate(n * sizeof(float)), *guessed = allocate(n * sizeof(float));
+    for (size_t i = 0; i < n; i++) {
         plane[i] = 0.25f;
-    const struct hf_io_result result = {0, {plane, plane, plane, NULL}};
+        guessed[i] = (float)i;
+    }
+    const struct hf_io_result result = {0, {plane, plane, plane, NULL}, guessed};
     const struct hf_io_job job = {
         .path = target, .results = &result, .result_count = 1, .compression = compression, .run = &threads};
-    CHECK_MSG(!hf_io_grow(f, 0, box, 1e10f, &threads, &err), "%s", err.message);
+    if (grow == larger)
+        CHECK_MSG(!hf_io_grow(f, 0, box, 1e10f, &threads, &err), "%s", err.message);
     CHECK_INT(hf_io_view(f, 0)->width, parts[0].width + grow[0] + grow[2]);
     CHECK_MSG(!hf_io_write(f, &job, NULL, &err), "%s", err.message);
     hf_io_close(&f);
@@ -80,6 +84,11 @@ static void grow_one(const struct part *parts, const char *compression)
         free(old);
         free(new);
     }
+    size_t size;
+    uint8_t *told = channel_of(b, 0, "guessed", &size);
+    CHECK_MSG(told && size == n * sizeof(float) && !memcmp(told, guessed, size), "the channel that is added is lost");
+    free(told);
+    free(guessed);
     exr_finish(&a);
     exr_finish(&b);
     // It reads as any other file, and its colour is the new one everywhere.
@@ -100,18 +109,20 @@ static void grow_one(const struct part *parts, const char *compression)
 void test_grow(void)
 {
     static const exr_storage_t storages[] = {EXR_STORAGE_SCANLINE, EXR_STORAGE_TILED};
+    static const char *const compressions[] = {NULL, NULL, "none", "none", "piz", "piz", "zips", "rle"};
+    static const int none[4];
     static const exr_lineorder_t orders[] = {EXR_LINEORDER_INCREASING_Y, EXR_LINEORDER_DECREASING_Y};
     for (int s = 0; s < 2; s++)
         for (int o = 0; o < 2 - s; o++) {
             struct part parts[MAX_PARTS] = {usual_part(storages[s], EXR_COMPRESSION_ZIP, orders[o])};
-            grow_one(parts, NULL);
-            grow_one(parts, "none");
-            grow_one(parts, "piz");
+            for (size_t i = 0; i < sizeof(compressions) / sizeof(*compressions); i++)
+                grow_one(parts, compressions[i], i % 2 ? none : larger);
             // With another part after it, whose chunks move.
             parts[0].name = "colour";
             parts[1] = usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIPS, EXR_LINEORDER_INCREASING_Y);
             parts[1].name = "other";
-            grow_one(parts, NULL);
+            grow_one(parts, NULL, larger);
+            grow_one(parts, NULL, none);
         }
     struct part odd[MAX_PARTS] = {usual_part(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_ZIP, EXR_LINEORDER_INCREASING_Y)};
     odd[0].x = odd[0].y = 0;

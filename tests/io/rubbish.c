@@ -28,7 +28,7 @@ bool survive(const char *path, const char *target)
             planes.p[k] = allocate(n * sizeof(float));
         ok &= !hf_io_read_colour(f, i, planes.p, &err);
         ok &= v->depth_part >= 0 && !hf_io_read_depth(f, i, planes.p[3], &err);
-        const struct hf_io_result r = {i, {planes.p[0], NULL, NULL, NULL}};
+        const struct hf_io_result r = {.view = i, .planes = {planes.p[0], NULL, NULL, NULL}};
         const struct hf_io_job job = {.path = target, .results = &r, .result_count = 1};
         ok &= !hf_io_write(f, &job, NULL, &err);
         free_planes(&planes);

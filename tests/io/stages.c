@@ -141,7 +141,7 @@ void test_stages(void)
         const struct hf_io_want want = {0, {planes[0], planes[1], planes[2], planes[3]}, planes[4]};
         CHECK_MSG(!hf_io_fetch(f, &want, 1, &err), "%s", err.message);
         CHECK_MSG(!hf_io_decode(f, &want, 1, &threads, &err), "%s", err.message);
-        const struct hf_io_result same = {0, {planes[0], planes[1], planes[2], planes[3]}};
+        const struct hf_io_result same = {.view = 0, .planes = {planes[0], planes[1], planes[2], planes[3]}};
         const struct hf_io_job job = {.path = target, .results = &same, .result_count = 1, .run = &threads};
         CHECK_MSG(!hf_io_write(f, &job, NULL, &err), "%s", err.message);
         hf_io_close(&f);

@@ -80,7 +80,7 @@ void round_trip(const char *path, const char *compression, bool half, bool exact
     const int n = hf_io_view_count(f);
     for (int i = 0; i < n; i++) {
         planes[i] = make_planes(hf_io_view(f, i), &too_large);
-        results[i] = (struct hf_io_result){i, {planes[i].p[0], planes[i].p[1], planes[i].p[2], NULL}};
+        results[i] = (struct hf_io_result){.view = i, .planes = {planes[i].p[0], planes[i].p[1], planes[i].p[2], NULL}};
     }
     unlink(target);
     const int files = files_in(folder);
@@ -141,7 +141,7 @@ int rewrite(const char *path, const char *target, struct hf_io_error *err)
         return -1;
     const struct hf_io_view *v = hf_io_view(f, 0);
     struct planes planes = make_planes(v, &ignored);
-    const struct hf_io_result r = {0, {planes.p[0], planes.p[1], planes.p[2], planes.p[3]}};
+    const struct hf_io_result r = {.view = 0, .planes = {planes.p[0], planes.p[1], planes.p[2], planes.p[3]}};
     const struct hf_io_job job = {.path = target, .results = &r, .result_count = 1};
     const int status = hf_io_write(f, &job, NULL, err);
     free_planes(&planes);

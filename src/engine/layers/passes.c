@@ -137,6 +137,17 @@ static void make_group(const struct hf_frame *f, const struct hf_layers *l, cons
                    tiles.x1 - tiles.x0);
 }
 
+// From how much of the light is known to how much is guessed.
+static void tell_guessed(const struct hf_frame *f, float *const row[4], int n, int channels)
+{
+    for (int c = 0; c < channels; c++)
+        for (int x = 0; x < n; x++)
+            row[c][x] = c < 3 ? hf_saturate(1 - row[c][x]) : 1;
+    for (int x = 0; x < n; x++)
+        f->counts->guessed += (uint64_t)(row[0][x] * 0x1p24f);
+    f->counts->looked_at += (uint64_t)n;
+}
+
 void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
 {
     struct hf_layers l = *hf_layers(f->s);
@@ -167,9 +178,8 @@ void hf_layers_composite_pass(const struct hf_frame *f, struct hf_rect r)
             count_row(f, r, y);
         for (int c = 0; c < channels; c++)
             row[c] = out[c] + (ptrdiff_t)(y - tiles.y0) * width + x0 - tiles.x0;
-        for (int c = 0; c < channels && l.guessed; c++)
-            for (int x = 0; x < x1 - x0; x++)
-                row[c][x] = c < 3 ? hf_saturate(1 - row[c][x]) : 1;
+        if (l.guessed)
+            tell_guessed(f, row, x1 - x0, channels);
         hf_store_rgb(f, row, x1 - x0);
         hf_write_pixels(f, r.x0, y, r.x1 - r.x0, (const float *const *)row, channels == 4);
     }

@@ -32,8 +32,8 @@ static void set_defaults(struct cli_args *args)
 // values that differ from frame to frame are not listed here; resume.c adds them.
 static int makes_picture(const struct tool_option *o)
 {
-    static const char *const others[] = {"views",   "layer",       "merge",         "grow",
-                                         "display", "compression", "deterministic", "budget-ms"};
+    static const char *const others[] = {"views",       "layer",         "merge",     "grow",   "display",
+                                         "compression", "deterministic", "budget-ms", "guessed"};
     static const char *const per_frame[] = {"depth-file", "keys", "keys-blend", "focus-smooth", "print-focus"};
     for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
         if (!strcmp(o->name, others[i]))
@@ -327,7 +327,8 @@ static int combine(struct cli_args *args, const struct tool_parser *parser, stru
     else
         p->engine = HF_ENGINE_LAYERS;
     args->chose_chapter = tool_choose_chapter(parser, p);
-    args->guessed |= args->guessed_image != NULL;
+    if (args->guessed_image && !args->guessed)
+        args->guessed = CLI_GUESSED_IMAGE;
     if (check_focus(args, parser, error) || cli_choose_check(args, parser, error) || take_blur(args, parser, error))
         return -1;
     if (tool_given(parser, "keys-blend") && !args->keys)

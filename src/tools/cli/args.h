@@ -24,6 +24,9 @@ enum { CLI_CENTRED = INT_MIN };  // a place in args->display
 
 enum cli_keys_blend { CLI_KEYS_LINEAR, CLI_KEYS_SMOOTH };
 
+// --guessed: not asked, with a channel of OUTPUT, or for --guessed-image alone.
+enum cli_guessed { CLI_GUESSED_NOT, CLI_GUESSED_CHANNEL, CLI_GUESSED_IMAGE };
+
 // What the command line asks for. Numbers that it does not give are NAN, texts NULL.
 struct cli_args {
     const char **inputs;  // as given; input: that of the current frame
@@ -91,7 +94,7 @@ struct cli_args {
     const char *dump_dir;
     int explain;
     const char *explain_image, *focus_image, *guessed_image;
-    int guessed;  // --guessed, also with --guessed-image
+    int guessed;  // enum cli_guessed
     int json;
     const char *json_file;  // NULL: stdout
     const char *json_word;  // json_file if it was a word of its own, which may turn out to be INPUT

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "tools/cli/frame.h"
+#include "tools/cli/guessed.h"
 #include "tools/cli/log.h"
 #include "tools/cli/plan.h"
 #include "tools/cli/progress.h"
@@ -44,6 +45,7 @@ struct batch {
     atomic_int bad_arguments;      // frames that failed because of the command line
     atomic_int chosen[MAX_STEPS];  // frames by step of the time budget
     atomic_int missed[2];          // [0]: frames over the time budget; [1]: of these, at the cheapest step
+    struct cli_guess *guesses;     // --guessed: of each frame the view of which most was guessed
     int measuring;                 // one frame at a time, to measure its memory:
     double frame_bytes;
     struct cli_room room;
@@ -174,6 +176,10 @@ static void finish(struct batch *b, struct cli_frame *frame, const struct cli_se
                 atomic_fetch_add(&b->missed[1], report.all.budget_step + 1 == report.all.budget_steps);
                 break;
             }
+        for (int i = 0; i < frame->view_count; i++) {
+            struct cli_guess *most = &b->guesses[r->job - b->shot->jobs.list];
+            *most = frame->views[i].guess.share > most->share ? frame->views[i].guess : *most;
+        }
         for (int s = 0; s < CLI_STAGES; s++)
             atomic_fetch_add(&b->progress.us[s], (long long)(1000 * frame->ms[s]));
         atomic_fetch_add(&b->progress.rendered, 1);
@@ -326,6 +332,25 @@ static const char *plural(int count)
     return count == 1 ? "" : "s";
 }
 
+// The frame of which most was guessed, and what would help.
+static void print_guessed(const struct batch *b)
+{
+    const struct cli_jobs *jobs = &b->shot->jobs;
+    int most = 0;
+    double sum = 0;
+    char about[80], text[256];
+    for (int i = 0; i < jobs->count; i++) {
+        sum += b->guesses[i].share;
+        most = b->guesses[i].share > b->guesses[most].share ? i : most;
+    }
+    snprintf(about, sizeof(about), ", %.2g %% of all frames", 100 * sum / b->progress.done);
+    cli_guessed_sentence(&b->guesses[most], about, text, sizeof(text));
+    if (jobs->list[most].numbered)
+        tool_print_line("frame %d: %s", jobs->list[most].frame, text);
+    else
+        tool_print_line("%s: %s", jobs->list[most].input, text);
+}
+
 static void print_summary(struct batch *b)
 {
     const struct cli_progress *p = &b->progress;
@@ -343,6 +368,8 @@ static void print_summary(struct batch *b)
     if (done)
         tool_print_line("%d at a time on %d thread%s each, peak memory %.0f MiB; %s", b->at_once, b->threads_of_each,
                         plural(b->threads_of_each), peak_memory() / GIB * 1024, shares);
+    if (done && b->args->guessed)
+        print_guessed(b);
     for (int s = 0; s < MAX_STEPS && b->args->params.run.budget_ms > 0; s++)
         if (b->chosen[s])
             tool_print_line("--budget-ms %g: %d frame%s %s%.0d", b->args->params.run.budget_ms, (int)b->chosen[s],
@@ -388,6 +415,9 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
     struct batch b = {.args = args, .shot = shot};
     error->text[0] = '\0';
     keep_memory();
+    b.guesses = calloc((size_t)shot->jobs.count + 1, sizeof(*b.guesses));
+    if (!b.guesses)
+        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", args->input);
     cli_room_open(&b.room, cli_plan_memory_limit(args));
     int status = cli_plan_open(&b.plan, args, shot, error);
     if (!status)
@@ -420,5 +450,6 @@ int cli_batch(int argc, char **argv, const struct cli_args *args, const struct c
     close_sessions(&b);
     cli_room_close(&b.room);
     cli_plan_close(&b.plan);
+    free(b.guesses);
     return status;
 }

@@ -10,6 +10,7 @@
 #include "tools/cli/dump.h"
 #include "tools/cli/explain.h"
 #include "tools/cli/focus.h"
+#include "tools/cli/guessed.h"
 #include "tools/cli/lamps.h"
 #include "tools/cli/room.h"
 #include "tools/cli/surfaces.h"
@@ -453,7 +454,7 @@ static int render_view(struct cli_frame *frame, struct cli_view *v, struct cli_s
     struct cli_lamps lamps;
     struct hf_params params = v->setup.params;
     params.highlight.gain = 1;
-    status = frame->args->guessed ? cli_find_guessed(session, frame, v, &image, error) : 0;
+    status = frame->args->guessed ? cli_guessed_find(session, frame, v, &image, error) : 0;
     if (status)
         return status;
     status = cli_lamps_raise(&lamps, v, error);
@@ -523,6 +524,7 @@ int cli_frame_encode(struct cli_frame *frame, const struct hf_io_text *texts, in
         results[i].view = frame->views[i].index;
         for (int c = 0; c < 4; c++)
             results[i].planes[c] = frame->views[i].planes[c];
+        results[i].guessed = frame->args->guessed == CLI_GUESSED_CHANNEL ? frame->views[i].guesses : NULL;
     }
     const double start = tool_now_ms();
     const struct hf_io_job job = {.path = frame->args->output,
@@ -556,6 +558,7 @@ void cli_view_free(struct cli_view *v)
     free(v->label);
     free(v->tag);
     free(v->radii);
+    free(v->guesses);
     free(v->tiles);
     free(v->said);
 }

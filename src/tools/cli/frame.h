@@ -24,6 +24,13 @@ static const float CLI_SHARP_RADIUS = 1;
 // Nobody sees blur of a smaller radius, in pixels.
 static const float CLI_SEEN_RADIUS = 0.1f;
 
+// --guessed: the share of a view's light that was guessed, all of it and what lies beyond the frame, how far beyond blur reads
+// there, pixels, and what the view has.
+struct cli_guess {
+    float share, beyond;
+    int overscan, surfaces, deep;
+};
+
 struct cli_view {
     int index;  // in the file
     const struct hf_io_view *view;
@@ -51,11 +58,12 @@ struct cli_view {
     float *radii;       // of all pixels, see cli_coc_look; may be NULL
     int warned;         // how many warnings the library gave
     char *said;         // their texts, one per line; NULL: none
-    uint64_t highlights;  // pixels of lamps, which --highlight-gain raises
-    int lamps;            // how many lamps
-    float guessed;        // --guessed: the share of the view's light that is guessed
-    int whole;            // --grow had nothing to do: the data window was as large as allowed
-    int cut;              // pixels that the blur reaches beyond the data window, where it is lost
+    uint64_t highlights;     // pixels of lamps, which --highlight-gain raises
+    int lamps;               // how many lamps
+    struct cli_guess guess;  // --guessed
+    float *guesses;          // the share of each pixel
+    int whole;               // --grow had nothing to do: the data window was as large as allowed
+    int cut;                 // pixels that the blur reaches beyond the data window, where it is lost
     struct tool_report report;
     uint8_t *tiles;  // of the report; NULL unless asked for
 };

@@ -3,6 +3,7 @@
 
 #include "tools/cli/choose.h"
 #include "tools/cli/explain.h"
+#include "tools/cli/guessed.h"
 #include "tools/cli/preview.h"
 #include "tools/cli/summary.h"
 #include "tools/cli/surfaces.h"
@@ -58,8 +59,7 @@ static void put_stats(struct tool_json *j, const struct cli_view *v, const struc
         tool_json_number(j, "far_blend", v->blend[1]);
     }
     tool_json_count(j, "cut", v->cut);
-    if (frame->args->guessed)
-        tool_json_number(j, "guessed", v->guessed);
+    cli_guessed_json(j, frame, v);
     if (v->setup.params.highlight.gain > 1) {
         tool_json_count(j, "highlights", (long long)v->highlights);
         tool_json_count(j, "lamps", v->lamps);

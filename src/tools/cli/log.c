@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "tools/cli/choose.h"
+#include "tools/cli/guessed.h"
 #include "tools/cli/json.h"
 #include "tools/cli/summary.h"
 #include "tools/cli/warn.h"
@@ -124,8 +125,7 @@ static void put_views(struct tool_json *j, const struct cli_frame *frame)
         tool_json_number(j, "near_radius", v->report.all.near_radius);
         tool_json_number(j, "far_radius", v->report.all.far_radius);
         tool_json_flag(j, "limited", cli_is_limited(v));
-        if (frame->args->guessed)
-            tool_json_number(j, "guessed", v->guessed);
+        cli_guessed_json(j, frame, v);
         tool_json_count(j, "warnings", cli_warnings_of(frame, v));
         cli_choose_json(j, s, 1e-6 * v->view->width * v->view->height);
         if (s->params.run.budget_ms > 0)

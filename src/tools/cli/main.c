@@ -5,6 +5,7 @@
 #include "tools/cli/batch.h"
 #include "tools/cli/explain.h"
 #include "tools/cli/frame.h"
+#include "tools/cli/guessed.h"
 #include "tools/cli/json.h"
 #include "tools/cli/lens.h"
 #include "tools/cli/overlay.h"
@@ -115,6 +116,8 @@ static int run_frame(int argc, char **argv, const struct cli_args *args, struct 
         status = cli_frame_save(&frame, error);
         if (!status)
             cli_print_summary(&frame, cli_print_warnings(&frame));
+        if (!status)
+            cli_guessed_print(&frame);
     }
     if (!status)
         status = cli_overlay_write(&frame, error);

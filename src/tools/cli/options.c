@@ -192,10 +192,10 @@ static const struct tool_option options[] = {
     {"focus-image", 0, TOOL_RUN, "FILE", "Write the picture painted by what each pixel is: near red, in focus green, "
      "far blue. Of several views each has its own: out.png is out.left.png and out.right.png.", TEXT(focus_image)},
     {"guessed", 0, TOOL_RUN, NULL, "Tell how much of the picture's light is guessed: what objects hide and no further picture "
-     "shows, and what lies beyond the frame. --verbose, --json and --log have it. Takes as long again as the blur. Default: "
-     "it is not asked.", FLAG(guessed), .engines = "layers"},
-    {"guessed-image", 0, TOOL_RUN, "FILE", "Write that for each pixel, 0 to 1, as an EXR with the channel guessed. Default: "
-     "none.", TEXT(guessed_image), .engines = "layers"},
+     "shows, and what lies beyond the frame. An EXR OUTPUT gets the share of each pixel as the channel guessed; --json and "
+     "--log have the sum. Takes as long again as the blur. Default: it is not asked.", FLAG(guessed), .engines = "layers"},
+    {"guessed-image", 0, TOOL_RUN, "FILE", "Write the share of each pixel, 0 to 1, as an EXR of its own with the channel guessed. "
+     "Default: none.", TEXT(guessed_image), .engines = "layers"},
     {"json", 0, TOOL_RUN, "[FILE]", "Print statistics and times as JSON, or write them to FILE. A word after it is "
      "FILE unless there is no other INPUT.", .parse = cli_parse_json},
     {"dump-passes", 0, TOOL_RUN, "DIR", "Write every intermediate buffer to DIR as EXR.", TEXT(dump_dir)},

@@ -59,7 +59,8 @@ double cli_room_pixels(const struct cli_frame *frame)
 
 double cli_room_file_bytes(const struct cli_frame *frame)
 {
-    const int planes = 4 + 1 + (frame->args->depth_file != NULL) + frame->args->grow;
+    const int planes =
+        4 + 1 + (frame->args->depth_file != NULL) + frame->args->grow + 3 * (frame->args->guessed != CLI_GUESSED_NOT);
     double data = 0, display = 0;
     for (int i = 0; i < frame->view_count; i++) {
         const struct hf_io_view *v = frame->views[i].view;

@@ -81,7 +81,7 @@ static void print_view(const struct cli_frame *frame, const struct cli_view *v, 
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", %d lamps, %" PRIu64 " pixels above %g raised, 1 to %g",
                       v->lamps, v->highlights, light->threshold, light->gain);
     if (frame->args->guessed)
-        n += snprintf(text + n, sizeof(text) - (size_t)n, ", %.3g %% of the light guessed", 100 * v->guessed);
+        n += snprintf(text + n, sizeof(text) - (size_t)n, ", %.3g %% of the light guessed", 100 * v->guess.share);
     if (r->all.budget_step)
         n += snprintf(text + n, sizeof(text) - (size_t)n, ", --budget-ms %g chose %s, %d below what was asked for",
                       budget, r->inner.budget_options, r->all.budget_step);

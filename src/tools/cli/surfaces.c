@@ -360,50 +360,6 @@ int cli_surfaces_render(struct hf_context *c, const struct cli_args *args, struc
     return status;
 }
 
-static int write_guessed(const struct cli_frame *frame, const struct cli_view *v, const float *plane,
-                         struct tool_error *error)
-{
-    static const char *const name = "guessed";
-    const struct hf_io_planes planes = {.width = v->view->width,
-                                        .height = v->view->height,
-                                        .channels = 1,
-                                        .names = &name,
-                                        .data = &plane,
-                                        .stride = v->view->width};
-    struct hf_io_error io;
-    if (!frame->args->guessed_image || !hf_io_write_planes(frame->args->guessed_image, &planes, &io))
-        return 0;
-    return tool_fail(error, CLI_ALL_FAILED, "--guessed-image: %s", io.message);
-}
-
-int cli_find_guessed(struct cli_session *session, const struct cli_frame *frame, struct cli_view *v,
-                     const struct hf_image *image, struct tool_error *error)
-{
-    const size_t n = (size_t)v->view->width * (size_t)v->view->height;
-    struct hf_params params = v->setup.params;
-    struct hf_image dst = *image;
-    float *memory = hf_io_alloc(3 * n * sizeof(float));
-    double sum = 0;
-    if (!memory)
-        return tool_fail(error, CLI_ALL_FAILED, "%s: out of memory", v->label);
-    for (int c = 0; c < 4; c++)
-        dst.data[c] = c < 3 ? memory + (size_t)c * n : NULL;
-    params.layers.guessed = 1;
-    params.run.budget_ms = 0;
-    const int status = v->view->deep      ? cli_deep_render(session->context, frame, v, &dst, &params)
-                       : v->surface_count ? render_layers(session->context, frame->args, v, image, &dst, &params)
-                                          : hf_render(session->context, &dst, image, &v->setup.depth, &params);
-    for (size_t i = 0; i < n && status == HF_OK; i++)
-        sum += memory[i];
-    v->guessed = (float)(sum / (double)n);
-    const int written = status == HF_OK ? write_guessed(frame, v, memory, error) : 0;
-    free(memory);
-    if (status == HF_OK)
-        return written;
-    return tool_fail(error, status == HF_ERR_ARG ? CLI_BAD_ARGUMENTS : CLI_ALL_FAILED, "%s: %s", v->label,
-                     session->log.text[0] ? session->log.text : hf_error_string(status));
-}
-
 int cli_deep_render(struct hf_context *c, const struct cli_frame *frame, struct cli_view *v,
                     const struct hf_image *image, const struct hf_params *params)
 {
@@ -426,6 +382,14 @@ int cli_deep_render(struct hf_context *c, const struct cli_frame *frame, struct 
     }
     v->samples_ready = 1;
     return hf_render_deep(c, image, &deep, params, NULL);
+}
+
+int cli_surfaces_render_to(struct hf_context *c, const struct cli_frame *frame, struct cli_view *v,
+                           const struct hf_image *image, const struct hf_image *dst, const struct hf_params *params)
+{
+    return v->view->deep      ? cli_deep_render(c, frame, v, dst, params)
+           : v->surface_count ? render_layers(c, frame->args, v, image, dst, params)
+                              : hf_render(c, dst, image, &v->setup.depth, params);
 }
 
 double cli_surfaces_bytes(const struct cli_frame *frame)

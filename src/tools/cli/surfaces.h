@@ -19,10 +19,9 @@ float *cli_surfaces_depth(const struct cli_frame *frame, const struct cli_view *
 // As hf_render, of the view with all of its pictures. *image, the view's own planes, becomes the result's.
 int cli_surfaces_render(struct hf_context *c, const struct cli_args *args, struct cli_view *v, struct hf_image *image,
                         const struct hf_params *params);
-// --guessed: find the share of the view's light that is guessed, before it is rendered, and write --guessed-image. image: the
-// view's colours. Returns 0, or an exit code with *error filled.
-int cli_find_guessed(struct cli_session *session, const struct cli_frame *frame, struct cli_view *v,
-                     const struct hf_image *image, struct tool_error *error);
+// Render a view with all that it has into dst, which is none of its pictures. image: the view's colour. Returns what the library does.
+int cli_surfaces_render_to(struct hf_context *c, const struct cli_frame *frame, struct cli_view *v,
+                           const struct hf_image *image, const struct hf_image *dst, const struct hf_params *params);
 // As hf_render, of a deep view.
 int cli_deep_render(struct hf_context *c, const struct cli_frame *frame, struct cli_view *v,
                     const struct hf_image *image, const struct hf_params *params);

@@ -24,6 +24,12 @@ void *hf_io_alloc(size_t size)
     return ptr;
 }
 
+void hf_io_guessed_name(const struct hf_io_view *v, char name[256])
+{
+    const char *dot = strrchr(v->colour[0], '.');
+    snprintf(name, 256, "%.*sguessed", dot ? (int)(dot + 1 - v->colour[0]) : 0, v->colour[0]);
+}
+
 const char *hf_io_extension(const char *path)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');

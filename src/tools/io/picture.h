@@ -73,6 +73,8 @@ struct hf_io_choice {
 struct hf_io_result {
     int view;
     const float *planes[4];
+    const float
+        *guessed;  // of an EXR: the channel guessed beside the colours, which the file gets if it has none; NULL: no
 };
 
 // A text in a file's header: an EXR attribute of type string, with a name of at most 31 characters.
@@ -88,6 +90,9 @@ struct hf_io_written {
 
 // Append a view, all zero. NULL when there is no memory.
 struct hf_io_view *hf_io_add_view(struct hf_io_views *views);
+
+// The full name of the channel guessed of a view: that of its red with this last piece.
+void hf_io_guessed_name(const struct hf_io_view *v, char name[256]);
 
 // The part of the file's name after the last dot, or "".
 const char *hf_io_extension(const char *path);

@@ -12,7 +12,7 @@
 
 // The planes of one view as they will be written: the given ones, else the file's own.
 struct picture {
-    const float *planes[4];
+    const float *planes[5];  // and what was guessed, or NULL
     float *own[4];
 };
 
@@ -28,6 +28,7 @@ static int load_picture(struct hf_io_file *file, const struct hf_io_result *r, s
     const struct hf_io_view *v = &file->views.view[r->view];
     bool missing = false;
     memset(pic, 0, sizeof(*pic));
+    pic->planes[4] = r->guessed;
     for (int k = 0; k < 4; k++) {
         pic->planes[k] = v->colour[k][0] ? r->planes[k] : NULL;
         if (!v->colour[k][0] || pic->planes[k])
@@ -41,11 +42,19 @@ static int load_picture(struct hf_io_file *file, const struct hf_io_result *r, s
     return missing ? hf_io_read_colour(file, r->view, pic->own, err) : 0;
 }
 
-// Make an EXR with colours only.
+// Make an EXR with colours, and perhaps what was guessed.
 static int make_exr(struct hf_io_bytes *made, const struct hf_io_job *job, const struct hf_io_view *v,
-                    const float *const planes[4], int compression, struct hf_io_error *err)
+                    const float *const planes[5], int compression, struct hf_io_error *err)
 {
-    static const char *const names[4] = {"R", "G", "B", "A"};
+    static const char *const all_names[5] = {"R", "G", "B", "A", "guessed"};
+    const char *names[5];
+    const float *used[5];
+    int count = 0;
+    for (int c = 0; c < 5; c++)
+        if (planes[c]) {
+            names[count] = all_names[c];
+            used[count++] = planes[c];
+        }
     const struct hf_exr_new picture = {
         .data_window = v->data_window,
         .display_window = v->display_window,
@@ -54,9 +63,9 @@ static int make_exr(struct hf_io_bytes *made, const struct hf_io_job *job, const
         .screen_center_y = v->screen_center_y,
         .screen_width = v->screen_width,
         .compression = compression < 0 ? EXR_COMPRESSION_ZIP : (exr_compression_t)compression,
-        .channel_count = planes[3] ? 4 : 3,
+        .channel_count = count,
         .names = names,
-        .planes = planes,
+        .planes = used,
         .stride = v->width,
         .zip_level = job->zip_level,
         .texts = job->texts,
@@ -165,6 +174,20 @@ static int check_job(const struct hf_io_file *file, const struct hf_io_job *job,
     return 0;
 }
 
+// Give the file the channels guessed that it does not have.
+static int add_guessed(struct hf_io_file *file, const struct hf_io_job *job, struct hf_io_error *err)
+{
+    int status = 0;
+    for (int i = 0; i < job->result_count && !status; i++) {
+        const struct hf_io_view *v = &file->views.view[job->results[i].view];
+        char name[256];
+        hf_io_guessed_name(v, name);
+        if (job->results[i].guessed)
+            status = hf_exr_add_channel(file->exr, v->part, name, job->run, err);
+    }
+    return status;
+}
+
 int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const struct hf_io_job *job,
                  struct hf_io_written *written, struct hf_io_error *err)
 {
@@ -187,9 +210,11 @@ int hf_io_encode(struct hf_io_output **result, struct hf_io_file *file, const st
                                    job->zip_level, job->texts,   job->text_count};
     o->unsynced = job->unsynced;
     // Deep samples are not written again.
-    int status = file->exr && hf_io_is_exr_name(job->path) && !file->views.view[0].deep
-                     ? hf_exr_encode_file(&o->exr, file->exr, &exr, job->run, written, err)
-                     : make_view(&o->bytes, file, job, compression, written, err);
+    const bool copies = file->exr && hf_io_is_exr_name(job->path) && !file->views.view[0].deep;
+    int status = copies ? add_guessed(file, job, err) : 0;
+    if (!status)
+        status = copies ? hf_exr_encode_file(&o->exr, file->exr, &exr, job->run, written, err)
+                        : make_view(&o->bytes, file, job, compression, written, err);
     if (status)
         hf_io_output_free(&o);
     else if (file->oiio && !written->note[0])

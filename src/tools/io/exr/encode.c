@@ -58,6 +58,8 @@ static exr_result_t start_core(struct hf_exr_encoder *en)
                                      EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN);
     if (!rv)
         rv = exr_set_channels(en->core, 0, part->list);
+    for (int i = 0; i < part->added_count && !rv; i++)
+        rv = exr_add_channel(en->core, 0, part->added[i], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     return rv ? rv : exr_write_header(en->core);
 }
 

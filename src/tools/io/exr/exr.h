@@ -43,6 +43,8 @@ struct hf_exr_part {
     uint64_t chunk_count_at;  // of the chunkCount attribute's value; 0 if there is none
     uint64_t window_at;       // of the dataWindow attribute's value
     bool grown;               // window, width, height, layout and samples differ from the file's: see grow.c
+    char **added;             // names of channels that the file does not have, see grow.c
+    int added_count;
     int channel_count;
     struct hf_exr_channel *channels;
     const exr_attr_chlist_t *list;
@@ -162,6 +164,9 @@ struct hf_exr_fill {
 };
 int hf_exr_grow(struct hf_exr *e, int part, struct hf_io_box box, const struct hf_exr_fill *fills, int fill_count,
                 const struct hf_io_run *run, struct hf_io_error *err);
+// Give a part one more channel, of floats that are 0, unless it has one of that name.
+int hf_exr_add_channel(struct hf_exr *e, int part, const char *name, const struct hf_io_run *run,
+                       struct hf_io_error *err);
 
 // codec.c: read or write a part that only the codec can handle, as a whole. The samples lie as the layout says.
 int hf_exr_codec_read(struct hf_exr *e, int part, uint8_t *samples, int threads, struct hf_io_error *err);
@@ -208,7 +213,10 @@ int hf_exr_encode_file(struct hf_exr_made **out, struct hf_exr *e, const struct 
 int hf_exr_put_file(const struct hf_exr_made *made, struct hf_out *out, struct hf_io_error *err);
 void hf_exr_free_file(struct hf_exr_made *made);
 
-// stamp.c: a copy of a file's first bytes, up to the chunk tables, in which texts replace those of the same names in
+// stamp.c: a header, the file's first bytes up to the chunk tables, with one more channel of floats in the list of a part. To be
+// freed; NULL without memory.
+uint8_t *hf_exr_list_channel(const uint8_t *header, size_t *size, int part, const char *name);
+// a copy of a file's first bytes, up to the chunk tables, in which texts replace those of the same names in
 // the first part's header, and a checksum, 0 so far, follows them. To be freed; NULL without memory.
 uint8_t *hf_exr_stamp(const uint8_t *header, size_t *size, const struct hf_io_text *texts, int count);
 // Name of the checksum's attribute. Its value is the CRC-32 of the whole file, in which its own 8 digits count as zeros.

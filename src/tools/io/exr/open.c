@@ -450,6 +450,9 @@ void hf_exr_close(struct hf_exr *e)
         hf_exr_free_layout(&e->parts[p]);
         free(e->parts[p].samples);
         free(e->parts[p].channels);
+        for (int i = 0; i < e->parts[p].added_count; i++)
+            free(e->parts[p].added[i]);
+        free(e->parts[p].added);
     }
     free(e->fetched.bytes);
     free(e->fetched.range);

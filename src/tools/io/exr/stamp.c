@@ -77,6 +77,44 @@ uint8_t *hf_exr_stamp(const uint8_t *header, size_t *size, const struct hf_io_te
     return stamped;
 }
 
+// Where the list of a part's channels is, as an attribute; 0: nowhere.
+static size_t find_channels(const uint8_t *header, size_t size, int part)
+{
+    size_t at = MAGIC_AND_VERSION, n;
+    for (int p = 0; p <= part; p++, at++)
+        for (; (n = attribute_size(header + at, size - at)); at += n)
+            if (p == part && !strcmp((const char *)header + at, "channels"))
+                return at;
+    return 0;
+}
+
+uint8_t *hf_exr_list_channel(const uint8_t *header, size_t *size, int part, const char *name)
+{
+    enum { AFTER_NAME = 16, LONG_NAME = 31, LONG_NAMES = 4 };
+    static const size_t head = sizeof("channels") + sizeof("chlist");
+    const size_t list = find_channels(header, *size, part), added = strlen(name) + 1 + AFTER_NAME;
+    // Type float, not linear to the eye, of full resolution.
+    const int32_t entry[AFTER_NAME / 4] = {EXR_PIXEL_FLOAT, 0, 1, 1};
+    uint8_t *made = list ? malloc(*size + added) : NULL;
+    if (!made)
+        return NULL;
+    size_t at = list + head + sizeof(uint32_t);
+    while (header[at] && strcmp((const char *)header + at, name) < 0)
+        at += strlen((const char *)header + at) + 1 + AFTER_NAME;
+    memcpy(made, header, at);
+    memcpy(made + at, name, strlen(name) + 1);
+    memcpy(made + at + strlen(name) + 1, entry, sizeof(entry));
+    memcpy(made + at + added, header + at, *size - at);
+    uint32_t bytes;
+    memcpy(&bytes, header + list + head, sizeof(bytes));
+    bytes += (uint32_t)added;
+    memcpy(made + list + head, &bytes, sizeof(bytes));
+    if (strlen(name) > LONG_NAME)
+        made[5] |= LONG_NAMES;  // a flag in the version
+    *size += added;
+    return made;
+}
+
 size_t hf_exr_find_sum(const uint8_t *header, size_t size)
 {
     size_t at = MAGIC_AND_VERSION, n;

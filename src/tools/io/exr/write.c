@@ -54,6 +54,14 @@ struct encoding {
     struct hf_io_error *err;
 };
 
+// The number of a view's channel guessed; -1: there is none.
+static int guessed_channel(const struct hf_exr_part *part, const struct hf_io_view *v)
+{
+    char name[256];
+    hf_io_guessed_name(v, name);
+    return hf_exr_find_channel(part, name);
+}
+
 static int plan_part(struct hf_exr *e, int p, const struct hf_exr_job *job, struct part_plan *plan,
                      struct hf_io_error *err)
 {
@@ -71,6 +79,10 @@ static int plan_part(struct hf_exr *e, int p, const struct hf_exr_job *job, stru
                                   v->colour[k]);
             plan->changed = true;
         }
+        const int guessed = v->part == p && job->results[i].guessed ? guessed_channel(part, v) : -1;
+        if (guessed >= 0 && part->channels[guessed].type == EXR_PIXEL_UINT)
+            return hf_io_fail(err, "%s: channel %s holds integers, which cannot say how much was guessed", e->path,
+                              part->channels[guessed].name);
     }
     if (plan->changed && !part->one_level)
         return hf_io_fail(err, "%s: part %d is mipmapped; writing new colours into it is not supported", e->path, p);
@@ -82,6 +94,20 @@ static int plan_part(struct hf_exr *e, int p, const struct hf_exr_job *job, stru
     plan->pieces = calloc((size_t)plan->chunk_count, sizeof(*plan->pieces));
     plan->order = calloc((size_t)plan->chunk_count, sizeof(*plan->order));
     return plan->pieces && plan->order ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
+}
+
+// List the channels that parts were given.
+static int list_added(const struct hf_exr *e, uint8_t **header, size_t *size, struct hf_io_error *err)
+{
+    for (int p = 0; p < e->part_count; p++)
+        for (int i = 0; i < e->parts[p].added_count; i++) {
+            uint8_t *listed = hf_exr_list_channel(*header, size, p, e->parts[p].added[i]);
+            if (!listed)
+                return hf_io_fail(err, "%s: out of memory", e->path);
+            free(*header);
+            *header = listed;
+        }
+    return 0;
 }
 
 // The source's header, with the texts, and with one byte and one number per part changed where the compression changes.
@@ -106,6 +132,8 @@ static int make_header(struct hf_exr_made *m, const struct hf_exr_job *job, stru
         if (part->grown)
             memcpy(header + part->window_at, &part->window, sizeof(part->window));
     }
+    if (!status)
+        status = list_added(e, &header, &size, err);
     if (!status && job->text_count) {
         uint8_t *stamped = hf_exr_stamp(header, &size, job->texts, job->text_count);
         status = stamped ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
@@ -181,6 +209,16 @@ static void put_row(uint8_t *to, const float *from, int n, exr_pixel_type_t type
     }
 }
 
+// Put a new plane over the chunk's samples of a channel.
+static void put_plane(const struct encoding *en, struct encode_worker *w, const struct hf_exr_chunk *k, int channel,
+                      const float *plane, uint64_t *clamped)
+{
+    const struct hf_exr_part *part = &en->e->parts[en->part];
+    for (int y = k->y0; y < k->y0 + k->height; y++)
+        put_row(w->raw + hf_exr_row_at(part, k, channel, y), plane + (size_t)y * (size_t)part->width + (size_t)k->x0,
+                k->width, part->channels[channel].type, clamped);
+}
+
 // Put the new colours of one view over the chunk's samples.
 static void put_view(const struct encoding *en, struct encode_worker *w, const struct hf_exr_chunk *k,
                      const struct hf_io_result *r, uint64_t *clamped)
@@ -188,16 +226,20 @@ static void put_view(const struct encoding *en, struct encode_worker *w, const s
     const struct hf_io_view *v = &en->job->views->view[r->view];
     const struct hf_exr_part *part = &en->e->parts[en->part];
     const bool y_only = !strcmp(v->colour[0], v->colour[1]);
+    if (r->guessed)
+        put_plane(en, w, k, guessed_channel(part, v), r->guessed, clamped);
     for (int c = 0; c < 4; c++) {
         if (!r->planes[c] || !v->colour[c][0] || (y_only && (c == 1 || c == 2)))
             continue;
         const int channel = hf_exr_find_channel(part, v->colour[c]);
-        for (int y = k->y0; y < k->y0 + k->height; y++) {
+        if (!y_only || c)
+            put_plane(en, w, k, channel, r->planes[c], clamped);
+        for (int y = k->y0; y < k->y0 + k->height && y_only && !c; y++) {
             const size_t at = (size_t)y * (size_t)part->width + (size_t)k->x0;
-            for (int x = 0; x < k->width && y_only && c == 0; x++)
+            for (int x = 0; x < k->width; x++)
                 w->row[x] = grey(r->planes, at + (size_t)x);
-            put_row(w->raw + hf_exr_row_at(part, k, channel, y), y_only && c == 0 ? w->row : r->planes[c] + at,
-                    k->width, part->channels[channel].type, clamped);
+            put_row(w->raw + hf_exr_row_at(part, k, channel, y), w->row, k->width, part->channels[channel].type,
+                    clamped);
         }
     }
 }
