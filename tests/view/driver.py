@@ -144,6 +144,7 @@ class View:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
+            self._stderr.join(PATIENCE)
 
 
 def numbers(text):

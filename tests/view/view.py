@@ -147,7 +147,10 @@ def check_looking(screen):
     view.wait("^profiler 1")
     view.key("question")
     view.wait("^keys")
+    driver.until(lambda: subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "^Keys$"], env=view.env,
+                                        stdout=subprocess.PIPE).stdout, "the list of keys")
     view.kill()
+    tests.check("without a warning", not view.errors, *view.errors)
 
 
 def check_demo(screen, folder):

@@ -269,12 +269,7 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN);
     hf_io_catch_signals();
     struct tool_error error = {""};
-    int status = run(argc, argv, &error);
-    const int failed = ferror(stdout);
-    if ((fflush(stdout) || failed) && !status)
-        status = tool_fail(&error, CLI_ALL_FAILED, "standard output could not be written: %s", strerror(errno));
+    const int status = run(argc, argv, &error);
     // A shot has already printed its errors, and leaves the text empty.
-    if (status && error.text[0])
-        tool_print_line("%s", error.text);
-    return status;
+    return tool_end(status, CLI_ALL_FAILED, &error);
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/common/error.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 const char *tool_program = "hyperfocal";
 atomic_int tool_bar_shown;
@@ -43,4 +45,14 @@ void tool_print_line(const char *format, ...)
     va_end(list);
     hide_controls(line);
     fprintf(stderr, "%s%s: %s\n", atomic_exchange(&tool_bar_shown, 0) ? "\r\033[K" : "", tool_program, line);
+}
+
+int tool_end(int status, int unwritten, struct tool_error *error)
+{
+    const int failed = ferror(stdout);
+    if ((fflush(stdout) || failed) && !status)
+        status = tool_fail(error, unwritten, "standard output could not be written: %s", strerror(errno));
+    if (status && error->text[0])
+        tool_print_line("%s", error->text);
+    return status;
 }

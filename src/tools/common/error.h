@@ -23,6 +23,10 @@ extern const char *tool_program;
 // "PROGRAM: TEXT" as one line on stderr; control characters, which names may hold, are shown as '?'.
 void tool_print_line(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+// The end of a main: what was printed to stdout is written out, and the error's sentence follows if there is one. Returns the
+// program's exit status: the given one, or unwritten if that is 0 and stdout could not be written.
+int tool_end(int status, int unwritten, struct tool_error *error);
+
 // Set while a progress bar stands on the terminal's line; the next message replaces the bar.
 extern atomic_int tool_bar_shown;
 

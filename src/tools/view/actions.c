@@ -179,16 +179,8 @@ static const struct {
     {"The input, while it is held", "b"},
     {"Focus on what is at the pointer", "Return"},
     {"Move the picture", "Left Right Up Down"},
-    {"Move the line", "&lt;Shift&gt;Left &lt;Shift&gt;Right"},
+    {"Move the line", "<Shift>Left <Shift>Right"},
 };
-
-static void list_key(GString *xml, const char *label, const char *keys)
-{
-    g_string_append_printf(xml,
-                           "<child><object class=\"GtkShortcutsShortcut\"><property name=\"accelerator\">%s</property>"
-                           "<property name=\"title\">%s</property></object></child>",
-                           keys, label);
-}
 
 static void on_action(GSimpleAction *a, GVariant *parameter, gpointer data)
 {
@@ -201,29 +193,54 @@ static void on_action(GSimpleAction *a, GVariant *parameter, gpointer data)
             view_window_show(data, actions[i].show);
 }
 
+// A row of the list of keys. keys: with spaces between them; NULL: a heading.
+static void list_key(GtkWidget *column, const char *label, const char *keys)
+{
+    GtkWidget *row = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 6), *what = gtk_label_new(label);
+    gtk_label_set_xalign(GTK_LABEL(what), 0);
+    gtk_widget_set_hexpand(what, TRUE);
+    gtk_widget_set_margin_end(what, 12);
+    gtk_box_append(GTK_BOX(row), what);
+    gtk_box_append(GTK_BOX(column), row);
+    if (!keys) {
+        gtk_widget_add_css_class(what, "heading");
+        gtk_widget_set_margin_top(what, 12);
+        return;
+    }
+    char **each = g_strsplit(keys, " ", -1);
+    for (int i = 0; each[i]; i++)
+        gtk_box_append(GTK_BOX(row), gtk_shortcut_label_new(each[i]));
+    g_strfreev(each);
+}
+
+// All keys on one page: a GtkShortcutsWindow would spread them over two.
 static void do_keys(struct view_app *app)
 {
-    GString *xml = g_string_new(
-        "<interface><object class=\"GtkShortcutsWindow\" id=\"keys\"><property name=\"modal\">1"
-        "</property><child><object class=\"GtkShortcutsSection\"><property name=\"max-height\">13</property>");
-    for (int i = 0; i < ACTIONS; i++) {
-        if (actions[i].heading)
-            g_string_append_printf(
-                xml, "%s<child><object class=\"GtkShortcutsGroup\"><property name=\"title\">%s</property>",
-                i ? "</object></child>" : "", actions[i].heading);
-        char *keys = g_markup_escape_text(actions[i].keys, -1);
-        list_key(xml, actions[i].label, keys);
-        g_free(keys);
-        for (size_t k = 0; k < sizeof(others) / sizeof(others[0]) && !strcmp(actions[i].name, "out"); k++)
-            list_key(xml, others[k].label, others[k].keys);
+    enum { COLUMNS = 3 };
+    GtkWidget *dialog = g_object_new(GTK_TYPE_DIALOG, "use-header-bar", TRUE, "title", "Keys", "modal", TRUE,
+                                     "transient-for", app->window, "resizable", FALSE, NULL);
+    GtkWidget *box = gtk_box_new(GTK_ORIENTATION_HORIZONTAL, 36), *column[COLUMNS];
+    int rows[COLUMNS] = {0}, to = 0;
+    for (int i = 0; i < COLUMNS; i++) {
+        column[i] = gtk_box_new(GTK_ORIENTATION_VERTICAL, 6);
+        gtk_box_append(GTK_BOX(box), column[i]);
     }
-    g_string_append(xml, "</object></child></object></child></object></interface>");
-    GtkBuilder *builder = gtk_builder_new_from_string(xml->str, -1);
-    GtkWidget *keys = GTK_WIDGET(gtk_builder_get_object(builder, "keys"));
-    gtk_window_set_transient_for(GTK_WINDOW(keys), GTK_WINDOW(app->window));
-    gtk_window_present(GTK_WINDOW(keys));
-    g_object_unref(builder);
-    g_string_free(xml, TRUE);
+    for (int i = 0; i < ACTIONS; i++) {
+        if (actions[i].heading) {
+            for (int k = 0; k < COLUMNS; k++)
+                to = rows[k] < rows[to] ? k : to;
+            list_key(column[to], actions[i].heading, NULL);
+        }
+        rows[to]++;
+        list_key(column[to], actions[i].label, actions[i].keys);
+        for (size_t k = 0; k < sizeof(others) / sizeof(others[0]) && !strcmp(actions[i].name, "out"); k++) {
+            rows[to]++;
+            list_key(column[to], others[k].label, others[k].keys);
+        }
+    }
+    gtk_widget_add_css_class(box, "keys");
+    gtk_box_append(GTK_BOX(gtk_dialog_get_content_area(GTK_DIALOG(dialog))), box);
+    gtk_window_present(GTK_WINDOW(dialog));
     view_say("keys");
 }
 

@@ -135,7 +135,6 @@ static void begin_size(struct view_app *app)
 void view_bench_begin(struct view_app *app)
 {
     app->bench = g_new0(struct view_bench, 1);
-    gtk_widget_set_size_request(app->canvas, 1920, 1080);
     begin_size(app);
 }
 

@@ -18,6 +18,9 @@ struct _ViewCanvas {
     int said;                         // before or divider is told when it is on the screen
     uint32_t *before;                 // all of the input at 1/before_n
     int before_n;
+    // What is drawn, and what was drawn before: GTK keeps the last until the next is on the screen.
+    cairo_surface_t *screen[2];
+    int turn, failed;  // failed: there was no memory to draw, and that was told
     float gain, before_gain;
     struct view_camera camera;
     int fitted;  // the camera follows the size of the widget
@@ -169,39 +172,90 @@ static int make_before(ViewCanvas *c)
     return c->before != NULL;
 }
 
-static void draw_result(const struct view_screen *s, ViewCanvas *c, const struct view_result *r)
+static struct view_layer layer_of(const struct view_screen *s, const struct view_result *r)
 {
-    const struct view_layer layer = {r->pixels, r->at.x, r->at.y, r->at.width, r->at.height, r->n, 0, s->width};
-    view_compose(s, &c->camera, &layer);
+    return (struct view_layer){r->pixels, r->at.x, r->at.y, r->at.width, r->at.height, r->n, 0, s->width};
 }
 
-static void draw_before(const struct view_screen *s, ViewCanvas *c)
+static int draw_before(const struct view_screen *s, ViewCanvas *c)
 {
-    const struct view_pixels *p = view_picture_at(c->picture, c->before_n);
+    const struct view_pixels *p = make_before(c) ? view_picture_at(c->picture, c->before_n) : NULL;
     const int to = c->show_before ? s->width : (int)(c->divided * s->width);
+    if (!p)
+        return -1;
     const struct view_layer layer = {c->before, 0, 0, p->width, p->height, c->before_n, 0, to};
-    view_compose(s, &c->camera, &layer);
+    return view_compose(s, &c->camera, &layer);
 }
 
-static uint32_t *compose(ViewCanvas *c, struct view_screen *s)
+static void draw_divider(const struct view_screen *s, ViewCanvas *c)
 {
-    *s = screen_of(c);
-    s->pixels = malloc((size_t)s->width * (size_t)s->height * sizeof(*s->pixels));
-    if (!s->pixels)
-        return NULL;
-    view_compose_clear(s, 0xff1e1e1eu);
-    if (c->whole && c->whole != c->now)
-        draw_result(s, c, c->whole);
+    for (int y = 0; y < s->height; y++)
+        for (int x = 0; x < factor(c); x++)
+            s->pixels[(size_t)y * (size_t)s->width + (size_t)MIN(s->width - 1, (int)(c->divided * s->width) + x)] =
+                0xffffffffu;
+}
+
+static int compose(ViewCanvas *c, const struct view_screen *s)
+{
+    const struct view_layer now = c->now ? layer_of(s, c->now) : (struct view_layer){0};
+    int status = 0;
+    if (!c->now || !view_compose_covers(s, &c->camera, &now)) {
+        const struct view_layer whole = c->whole ? layer_of(s, c->whole) : now;
+        view_compose_clear(s, 0xff1e1e1eu);
+        if (c->whole && c->whole != c->now)
+            status |= view_compose(s, &c->camera, &whole);
+    }
     if (c->now)
-        draw_result(s, c, c->now);
-    if (c->picture && (c->show_before || c->divider) && make_before(c))
-        draw_before(s, c);
+        status |= view_compose(s, &c->camera, &now);
+    if (c->picture && (c->show_before || c->divider))
+        status |= draw_before(s, c);
     if (c->divider && !c->show_before)
-        for (int y = 0; y < s->height; y++)
-            for (int x = 0; x < factor(c); x++)
-                s->pixels[(size_t)y * (size_t)s->width + (size_t)MIN(s->width - 1, (int)(c->divided * s->width) + x)] =
-                    0xffffffffu;
-    return s->pixels;
+        draw_divider(s, c);
+    return status;
+}
+
+static const cairo_user_data_key_t pixels_key;
+
+// A picture without alpha, which GTK's software drawing copies; a texture's pixels are converted one by one.
+static cairo_surface_t *make_screen(const struct view_screen *s, int factor)
+{
+    uint32_t *pixels = malloc((size_t)s->width * (size_t)s->height * sizeof(*pixels));
+    if (!pixels)
+        return NULL;
+    cairo_surface_t *made = cairo_image_surface_create_for_data((unsigned char *)pixels, CAIRO_FORMAT_RGB24, s->width,
+                                                                s->height, s->width * 4);
+    if (cairo_surface_set_user_data(made, &pixels_key, pixels, free)) {
+        cairo_surface_destroy(made);
+        free(pixels);
+        return NULL;
+    }
+    cairo_surface_set_device_scale(made, factor, factor);
+    return made;
+}
+
+// What the canvas shows; NULL: there is not enough memory. The two screens take turns: GTK looks at the last one until the next is
+// drawn, and at none before that. So nothing has to be copied before it is drawn over, as cairo_surface_flush would do.
+static cairo_surface_t *draw(ViewCanvas *c)
+{
+    struct view_screen s = screen_of(c);
+    cairo_surface_t **to = &c->screen[c->turn ^= 1];
+    if (*to && (cairo_image_surface_get_width(*to) != s.width || cairo_image_surface_get_height(*to) != s.height))
+        g_clear_pointer(to, cairo_surface_destroy);
+    if (!*to)
+        *to = make_screen(&s, factor(c));
+    if (!*to)
+        return NULL;
+    s.pixels = cairo_surface_get_user_data(*to, &pixels_key);
+    return compose(c, &s) ? NULL : *to;
+}
+
+static gboolean tell_failure(gpointer data)
+{
+    ViewCanvas *c = data;
+    if (c->events.failed)
+        c->events.failed(c->cookie);
+    g_object_unref(c);
+    return G_SOURCE_REMOVE;
 }
 
 static void after_paint(GdkFrameClock *clock, gpointer data)
@@ -218,29 +272,24 @@ static void after_paint(GdkFrameClock *clock, gpointer data)
         c->events.drawn(c->cookie, c->now);
 }
 
-static const cairo_user_data_key_t pixels_key;
-
 static void snapshot(GtkWidget *widget, GtkSnapshot *to)
 {
     ViewCanvas *c = VIEW_CANVAS(widget);
     const int width = gtk_widget_get_width(widget), height = gtk_widget_get_height(widget);
     if (width <= 0 || height <= 0)
         return;
-    struct view_screen s;
-    if (!compose(c, &s))
+    cairo_surface_t *surface = draw(c);
+    if (!surface && !c->failed)
+        g_idle_add(tell_failure, g_object_ref(c));
+    c->failed = !surface;
+    if (!surface)
         return;
-    // As a picture without alpha, which GTK's software drawing copies; a texture's pixels are converted one by one.
-    cairo_surface_t *surface = cairo_image_surface_create_for_data((unsigned char *)s.pixels, CAIRO_FORMAT_RGB24,
-                                                                   s.width, s.height, s.width * 4);
-    cairo_surface_set_user_data(surface, &pixels_key, s.pixels, free);
-    cairo_surface_set_device_scale(surface, factor(c), factor(c));
     cairo_t *to_cairo = gtk_snapshot_append_cairo(to, &GRAPHENE_RECT_INIT(0, 0, (float)width, (float)height));
     cairo_set_source_surface(to_cairo, surface, 0, 0);
     cairo_pattern_set_filter(cairo_get_source(to_cairo), CAIRO_FILTER_NEAREST);
     cairo_set_operator(to_cairo, CAIRO_OPERATOR_SOURCE);
     cairo_paint(to_cairo);
     cairo_destroy(to_cairo);
-    cairo_surface_destroy(surface);
     if (c->unseen == 1 || c->said) {
         c->unseen = c->unseen ? 2 : 0;
         g_signal_connect(gtk_widget_get_frame_clock(widget), "after-paint", G_CALLBACK(after_paint), c);
@@ -457,6 +506,8 @@ static void dispose(GObject *object)
     forget(c);
     view_picture_unref(c->picture);
     c->picture = NULL;
+    for (int i = 0; i < 2; i++)
+        g_clear_pointer(&c->screen[i], cairo_surface_destroy);
     G_OBJECT_CLASS(view_canvas_parent_class)->dispose(object);
 }
 

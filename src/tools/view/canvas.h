@@ -15,6 +15,7 @@ struct view_canvas_events {
     void (*moved)(void *cookie);                                    // another part of the picture is seen
     void (*hover)(void *cookie, double x, double y, int inside);    // the pointer is there
     void (*drawn)(void *cookie, const struct view_result *result);  // this result is on the screen for the first time
+    void (*failed)(void *cookie);                                   // there is not enough memory to draw
 };
 
 GtkWidget *view_canvas_new(const struct view_canvas_events *events, void *cookie);

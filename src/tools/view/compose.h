@@ -28,6 +28,10 @@ struct view_screen {
 struct view_camera view_camera_drawn(const struct view_camera *camera);
 
 void view_compose_clear(const struct view_screen *screen, uint32_t colour);
-void view_compose(const struct view_screen *screen, const struct view_camera *camera, const struct view_layer *layer);
+// Whether the layer would leave nothing of the screen free.
+int view_compose_covers(const struct view_screen *screen, const struct view_camera *camera,
+                        const struct view_layer *layer);
+// Returns 0, or -1 if there is not enough memory.
+int view_compose(const struct view_screen *screen, const struct view_camera *camera, const struct view_layer *layer);
 
 #endif

@@ -15,7 +15,7 @@ void view_levels_tell(struct view_levels *l, enum view_stage stage, double megap
     // fast, and slowly that it is not.
     if (stage == VIEW_STANDARD || (megapixels < 0.1 && now > *known))
         return;
-    *known += (now < *known ? 0.4 : 0.1) * (now - *known);
+    *known += 0.2 * (now - *known);
 }
 
 // The engines whose look the ladder's cheaper steps keep.

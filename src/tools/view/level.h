@@ -13,7 +13,7 @@ struct view_levels {
     double ms[2];  // of a megapixel: by the quick settings, by those of the command
 };
 
-#define VIEW_TARGET_MS 12.0  // of a sixtieth of a second the rest is for the window
+#define VIEW_TARGET_MS 8.0  // of a sixtieth of a second the rest is for the window
 
 void view_levels_open(struct view_levels *l);
 // A frame of so many megapixels took so long.

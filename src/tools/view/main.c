@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hyperfocal-view: focus, lens and look are turned while the picture answers.
-#include <errno.h>
+#include <malloc.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "tools/common/standard.h"
 #include "tools/view/app.h"
@@ -100,15 +99,14 @@ static int run(int argc, char **argv, struct tool_error *error)
 int main(int argc, char **argv)
 {
     struct tool_error error = {""};
+    // Each frame takes and gives back pictures of the window's size: they are not given back to the system, which would clear them
+    // before the next.
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 256 << 20);
     tool_open_standard();
     tool_program = "hyperfocal-view";
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
-    int status = run(argc, argv, &error);
-    const int failed = ferror(stdout);
-    if ((fflush(stdout) || failed) && !status)
-        status = tool_fail(&error, CLI_ALL_FAILED, "standard output could not be written: %s", strerror(errno));
-    if (status && error.text[0])
-        tool_print_line("%s", error.text);
-    return status;
+    const int status = run(argc, argv, &error);
+    return tool_end(status, CLI_ALL_FAILED, &error);
 }

@@ -41,6 +41,11 @@ static void on_drawn(void *cookie, const struct view_result *result)
     view_window_drawn(cookie, result);
 }
 
+static void on_failed(void *cookie)
+{
+    view_app_tell(cookie, "There is not enough memory to draw the picture.");
+}
+
 static void on_result(void *cookie, struct view_result *result)
 {
     struct view_app *app = cookie;
@@ -348,6 +353,7 @@ static void load_style(void)
     gtk_css_provider_load_from_data(css,
                                     ".notice { padding: 6px 12px; background: #e5a50a; color: black; }"
                                     ".status { padding: 4px 12px; }"
+                                    ".keys { padding: 0 24px 24px; }"
                                     ".panel { padding: 8px 12px; }"
                                     ".panel .derived { opacity: 0.7; }"
                                     ".panel label.given { font-weight: bold; }"
@@ -365,9 +371,12 @@ static void load_style(void)
 
 static GtkWidget *make_canvas(struct view_app *app)
 {
-    const struct view_canvas_events events = {on_click, on_moved, on_hover, on_drawn};
+    const struct view_canvas_events events = {on_click, on_moved, on_hover, on_drawn, on_failed};
     app->canvas = view_canvas_new(&events, app);
-    gtk_widget_set_size_request(app->canvas, 240, 180);
+    if (app->own.bench)
+        gtk_widget_set_size_request(app->canvas, VIEW_BENCH_WIDTH, VIEW_BENCH_HEIGHT);
+    else
+        gtk_widget_set_size_request(app->canvas, 240, 180);
     return app->canvas;
 }
 
