@@ -11,6 +11,7 @@ import shutil
 import sys
 import tempfile
 import time
+import tomllib
 
 import bpy
 import numpy as np
@@ -391,6 +392,22 @@ def try_refocus():
     check("and is another than the draft", not np.array_equal(settled, draft))
 
 
+def try_manifest():
+    """What Blender 4.2 and later ask of an extension's manifest, as their manual lists it."""
+    path = os.path.join(os.path.dirname(addon.__file__), "blender_manifest.toml")
+    with open(path, "rb") as file:
+        manifest = tomllib.load(file)
+    wanted = {"schema_version", "id", "version", "name", "tagline", "maintainer", "type", "blender_version_min", "license"}
+    check(f"the manifest lacks {wanted - set(manifest)}", wanted <= set(manifest))
+    sentences = [manifest["tagline"], *manifest["permissions"].values()]
+    check("sentences of at most 64 characters without a full stop", all(0 < len(s) <= 64 and s[-1].isalnum() for s in sentences))
+    check("known permissions", set(manifest["permissions"]) <= {"files", "network", "clipboard", "camera", "microphone"})
+    check("known kind, tags and licence", manifest["type"] == "add-on" and set(manifest["tags"]) <= {"Render", "Camera"} and
+          all(word.startswith("SPDX:") for word in manifest["license"]))
+    check("the add-on's version", tuple(int(n) for n in manifest["version"].split(".")) == addon.bl_info["version"])
+    check("4.2 or later", tuple(int(n) for n in manifest["blender_version_min"].split(".")) >= (4, 2, 0))
+
+
 def try_refused():
     scene = scene_with_camera(lamp=False)
     for kind in ("ORTHO", "PANO"):
@@ -466,7 +483,7 @@ try:
     if "time" in names:
         time_refocus()
     if not names or "states" in names:
-        for rest in (try_animation, try_stereo, try_together, try_film, try_refocus, try_refused, try_interruptions):
+        for rest in (try_animation, try_stereo, try_together, try_film, try_refocus, try_manifest, try_refused, try_interruptions):
             rest()
 except Exception as error:  # Blender would go on without a word
     import traceback
