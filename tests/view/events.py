@@ -235,6 +235,17 @@ def check_crash(screen, folder):
     view.drawn()
     access.click(view, "push button", "Undo")
     view.drawn()
+    other = opened(screen, *words, **state)  # a second window on the same shot
+    other.drawn()
+    copies = os.listdir(os.path.join(folder, "state", "hyperfocal"))
+    other.key("k")
+    other.wait("^key focus 1")
+    tests.check("each window has its copy", len(os.listdir(os.path.join(folder, "state", "hyperfocal"))) == 2, copies)
+    other.key("ctrl+z")
+    other.drawn()
+    tests.check("and takes only its own away", other.close() == 0 and
+                os.listdir(os.path.join(folder, "state", "hyperfocal")) == copies, copies)
+    tests.check("nothing was recovered from a window that lives", not any("recovered" in l for l in other.said), other.said)
     view.kill()
     view = opened(screen, *words, **state)
     tests.check("keys are recovered", "recovered" in view.wait("^notice (.*)").group(1))

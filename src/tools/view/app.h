@@ -61,6 +61,8 @@ struct view_app {
     struct job *job;   // a command that runs; NULL: none
     char *keys_path;   // where the keys were read from or saved
     int keys_unsaved;  // they have changed since
+    char *spare;       // the copy of the keys for a crash; NULL: none
+    int spare_lock;    // the file with its lock
     int quiet;         // the window itself changes its controls
     int closing;       // the window closes once they are saved
     struct view_frames frames;

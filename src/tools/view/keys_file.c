@@ -1,46 +1,96 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/view/keys_file.h"
 
+#include <fcntl.h>
 #include <string.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "tools/view/model_keys.h"
 #include "tools/view/say.h"
 
-// One file for each shot: its name is a hash of the inputs and of the folder that they are named from.
-static char *spare_path(const struct view_app *app)
+// The copies of a shot's keys begin so: with a hash of the inputs and of the folder that they are named from.
+static char *spare_stem(const struct view_app *app)
 {
     GChecksum *sum = g_checksum_new(G_CHECKSUM_SHA1);
     char *folder = g_get_current_dir();
     g_checksum_update(sum, (const guchar *)folder, -1);
     for (int i = 0; i < app->model.input_count; i++)
         g_checksum_update(sum, (const guchar *)app->model.inputs[i], (gssize)strlen(app->model.inputs[i]) + 1);
-    char *name = g_strdup_printf("%s.csv", g_checksum_get_string(sum));
-    char *path = g_build_filename(g_get_user_state_dir(), "hyperfocal", name, NULL);
-    g_free(name);
+    char *stem = g_build_filename(g_get_user_state_dir(), "hyperfocal", g_checksum_get_string(sum), NULL);
     g_free(folder);
     g_checksum_free(sum);
-    return path;
+    return stem;
 }
 
-static void remove_spare(const struct view_app *app)
+// Each window has a copy of its own, and locks it as long as it lives. Returns the file, or -1 if another window has it.
+static int lock(const char *path)
 {
-    char *path = spare_path(app);
-    unlink(path);
-    g_free(path);
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file >= 0 && !flock(file, LOCK_EX | LOCK_NB))
+        return file;
+    if (file >= 0)
+        close(file);
+    return -1;
+}
+
+void view_keys_release(struct view_app *app)
+{
+    if (app->spare && app->spare_lock >= 0)
+        close(app->spare_lock);
+    g_clear_pointer(&app->spare, g_free);
+}
+
+static void remove_spare(struct view_app *app)
+{
+    if (app->spare)
+        unlink(app->spare);
+    view_keys_release(app);
+}
+
+// A copy that no window has: one that crashed left it.
+static int find_spare(struct view_app *app)
+{
+    char *stem = spare_stem(app), *folder = g_path_get_dirname(stem), *begin = g_path_get_basename(stem);
+    GDir *files = g_dir_open(folder, 0, NULL);
+    const char *name;
+    while (files && !app->spare && (name = g_dir_read_name(files))) {
+        if (!g_str_has_prefix(name, begin) || !g_str_has_suffix(name, ".csv"))
+            continue;
+        app->spare = g_build_filename(folder, name, NULL);
+        app->spare_lock = lock(app->spare);
+        if (app->spare_lock < 0)
+            view_keys_release(app);
+    }
+    if (files)
+        g_dir_close(files);
+    g_free(begin);
+    g_free(folder);
+    g_free(stem);
+    return app->spare != NULL;
 }
 
 void view_keys_changed(struct view_app *app)
 {
     struct tool_error error;
-    char *path = spare_path(app), *folder = g_path_get_dirname(path);
     app->keys_unsaved = 1;
-    if (!view_keys_any(&app->model.now.keys))
-        unlink(path);
-    else if (g_mkdir_with_parents(folder, 0700) || view_keys_save(&app->model.now.keys, path, &error))
+    if (!view_keys_any(&app->model.now.keys)) {
+        remove_spare(app);
+        return;
+    }
+    char *stem = spare_stem(app);
+    char *path = app->spare ? g_strdup(app->spare) : g_strdup_printf("%s-%d.csv", stem, (int)getpid());
+    char *folder = g_path_get_dirname(path);
+    view_keys_release(app);  // saving replaces the file
+    if (g_mkdir_with_parents(folder, 0700) || view_keys_save(&app->model.now.keys, path, &error)) {
         view_app_tell(app, "%s cannot be written: a crash would lose keys that are not saved.", path);
+    } else {
+        app->spare = g_strdup(path);
+        app->spare_lock = lock(path);
+    }
     g_free(folder);
     g_free(path);
+    g_free(stem);
 }
 
 int view_keys_store_as(struct view_app *app, const char *name)
@@ -104,11 +154,9 @@ void view_keys_begin(struct view_app *app)
     const char *given = view_model_get(&app->model, view_option_place("keys"));
     const char *blend = view_model_get(&app->model, view_option_place("keys-blend"));
     const int smooth = blend && !strcmp(blend, "smooth");
-    char *spare = spare_path(app);
-    if (!app->shot.sequence) {
-        g_free(spare);
+    view_keys_release(app);
+    if (!app->shot.sequence)
         return;
-    }
     if (given && !view_keys_any(&app->model.now.keys)) {
         if (cli_keys_load(&keys, given, smooth, &error))
             view_app_tell(app, "%s", error.text);
@@ -118,13 +166,12 @@ void view_keys_begin(struct view_app *app)
             app->keys_path = g_strdup(given);
         }
     }
-    if (!access(spare, R_OK) && !cli_keys_load(&keys, spare, smooth, &error) && !view_model_keep(&app->model, 0)) {
+    if (find_spare(app) && !cli_keys_load(&keys, app->spare, smooth, &error) && !view_model_keep(&app->model, 0)) {
         take(app, &keys);
         app->keys_unsaved = 1;
         view_app_tell(app,
                       "Keys were recovered that were not saved when the window was last open. Ctrl+Z takes them back.");
     }
-    g_free(spare);
 }
 
 static void on_answer(GtkDialog *dialog, int response, gpointer data)

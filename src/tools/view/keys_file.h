@@ -13,6 +13,8 @@ void view_keys_store(struct view_app *app);
 int view_keys_store_as(struct view_app *app, const char *path);
 // On opening a shot: read --keys FILE, or what a session that crashed has left.
 void view_keys_begin(struct view_app *app);
+// Let go of the copy, which stays where it is.
+void view_keys_release(struct view_app *app);
 // On closing the window: 1 if it may be closed now; else the user is asked.
 int view_keys_end(struct view_app *app);
 

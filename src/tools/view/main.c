@@ -9,6 +9,7 @@
 #include "tools/view/app.h"
 #include "tools/view/bench.h"
 #include "tools/view/demo.h"
+#include "tools/view/keys_file.h"
 #include "tools/view/panel.h"
 #include "tools/view/timeline.h"
 
@@ -59,6 +60,7 @@ static void end(struct view_app *app)
     view_timeline_free(app);
     g_free(app->loaded_by);
     g_free(app->keys_path);
+    view_keys_release(app);
 }
 
 static int run_window(struct view_app *app, struct tool_error *error)
