@@ -22,6 +22,8 @@ struct bench_args {
     char found[4096];           // the folder that images points at, if it was searched for
     const char *compression;    // for batch: one of EXR's, NULL for all
     int engine_given;
+    int peels;     // for truth
+    int surfaces;  // for passes: known ones
     int simulate;  // for scaling
     float bandwidth;
     const char *json;  // file, "-" for stdout, NULL for none

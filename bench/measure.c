@@ -50,11 +50,25 @@ static double round_ms(double ms)
     return rint(ms * 1e6) * 1e-6;
 }
 
+// What a frame is made of: the picture, or it and its peels.
+static int render_all(const struct bench_subject *s, struct hf_context *c, const struct bench_image *from)
+{
+    struct hf_layer layers[BENCH_SURFACES];
+    layers[0] = (struct hf_layer){.size = sizeof *layers, .image = &from->image, .depth = &s->depth};
+    for (int i = 1; i < s->surfaces; i++)
+        layers[i] = (struct hf_layer){.size = sizeof *layers,
+                                      .kind = HF_LAYER_PEEL,
+                                      .image = &s->peel_images[i - 1],
+                                      .depth = &s->peel_depths[i - 1]};
+    return s->surfaces > 1 ? hf_render_layers(c, &s->out.image, layers, s->surfaces, &s->params, NULL)
+                           : hf_render(c, &s->out.image, &from->image, &s->depth, &s->params);
+}
+
 static int render_with(const struct bench_subject *s, struct hf_context *c, const struct bench_image *from,
                        struct frame *frame, struct tool_error *error)
 {
     const double start = tool_now_ms();
-    const int err = hf_render(c, &s->out.image, &from->image, &s->depth, &s->params);
+    const int err = render_all(s, c, from);
     const double end = tool_now_ms();
     if (err)
         return tool_fail(error, -1, "rendering failed: %s", hf_error_string(err));

@@ -4,17 +4,22 @@
 #define HF_BENCH_MEASURE_H
 
 #include "tools/common/error.h"
-#include "hyperfocal/hyperfocal.h"
+#include "hyperfocal/layers.h"
 #include "pack.h"
 #include "workers.h"
 #include "tools/common/report.h"
+
+enum { BENCH_SURFACES = 3 };  // of a pixel that may be known
 
 // What is rendered, and its memory; all of it belongs to the caller.
 struct bench_subject {
     struct hf_context *context;
     struct hf_params params;
-    struct bench_image in, out;     // same size
-    struct hf_depth depth;          // rows packed tightly
+    struct bench_image in, out;  // same size
+    struct hf_depth depth;       // rows packed tightly
+    int surfaces;                // known ones; more than 1: with the peels
+    struct hf_image peel_images[BENCH_SURFACES - 1];
+    struct hf_depth peel_depths[BENCH_SURFACES - 1];
     float *scratch;                 // a second plane of depth's size
     struct bench_workers *workers;  // as many threads as the context has
 };

@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "report.h"
 #include "subject.h"
+#include "surfaces.h"
 #include "write.h"
 
 #include <math.h>
@@ -41,13 +42,19 @@ int bench_passes_measure(struct bench_args *args, int with_uses, struct bench_ru
 {
     struct bench_scene scene = {0};
     struct bench_subject subject = {0};
+    struct bench_peel peels[BENCH_SURFACES - 1] = {{0}};
     struct tool_error log = {""};
     int err = make_scene(args, &scene, error);
     if (!err)
         err = bench_subject_open(&subject, args, &scene, &log, error);
+    for (int k = 1; k < args->surfaces && !err; k++)
+        err = bench_scene_builtin(args->scene, NULL) ? bench_peel_make(&peels[k - 1], &scene, k, error)
+                                                     : bench_peel_read(&peels[k - 1], args->scene, k, error);
+    bench_subject_peels(&subject, peels, args->surfaces - 1);
     if (!err) {
         err = bench_measure(&subject, args->frames, result, error);
-        if (!err && with_uses)
+        // Several pictures are not rendered in place.
+        if (!err && with_uses && args->surfaces == 1)
             err = bench_measure_uses(&subject, &result->uses, error);
         if (err && *log.text)
             tool_fail(error, -1, "%s", log.text);
@@ -61,6 +68,8 @@ int bench_passes_measure(struct bench_args *args, int with_uses, struct bench_ru
                                   hf_context_isa(subject.context),
                                   result};
     bench_subject_close(&subject);
+    for (int k = 0; k < BENCH_SURFACES - 1; k++)
+        bench_peel_free(&peels[k]);
     bench_scene_free(&scene);
     return err;
 }

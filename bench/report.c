@@ -42,16 +42,19 @@ static void table_row(FILE *out, const char *name, double ms, double all_ms, dou
 static void table_machine(FILE *out, const struct bench_run *run)
 {
     const struct bench_result *r = run->result;
-    char cpu[128];
+    char cpu[128], surfaces[32] = "";
+    if (run->args->surfaces > 1)
+        snprintf(surfaces, sizeof surfaces, " %d surfaces,", run->args->surfaces);
     tool_cpu(cpu, sizeof cpu);
     fprintf(out, "%s, %s, %d thread%s, %dx%d, scene %s (near %.0f%%, sharp %.0f%%, far %.0f%%)\n", cpu,
             hf_isa_name(run->isa), run->threads, run->threads == 1 ? "" : "s", run->width, run->height,
             run->args->scene, 100 * share(r->stats.all.near_pixels, run), 100 * share(r->stats.all.sharp_pixels, run),
             100 * share(r->stats.all.far_pixels, run));
-    fprintf(out, "%s storage, %s to %s, radius %g, %d frames, %.1f MB held; hyperfocal %s, %s\n",
+    fprintf(out, "%s storage, %s to %s, radius %g,%s %d frames, %.1f MB held; hyperfocal %s, %s\n",
             hf_name(HF_NAMES_STORAGE, (int)run->args->params.gather.storage),
             hf_name(HF_NAMES_FORMAT, (int)run->args->in), hf_name(HF_NAMES_FORMAT, (int)run->args->out),
-            r->stats.params.max_radius, r->frames, (double)r->stats.all.memory_held * 1e-6, hf_version(), compiler);
+            r->stats.params.max_radius, surfaces, r->frames, (double)r->stats.all.memory_held * 1e-6, hf_version(),
+            compiler);
     fprintf(out, "memcpy %.3f ms, peak %.1f GFLOP/s, cost %.1f MFLOP (All x peak), All / memcpy %.2f\n", r->memcpy_ms,
             r->fma_gflops, cost_mflop(r), r->all.median_ms / r->memcpy_ms);
 }

@@ -33,6 +33,16 @@ int bench_subject_open(struct bench_subject *s, const struct bench_args *args, c
     return 0;
 }
 
+void bench_subject_lens(struct bench_subject *s, const struct bench_camera *camera)
+{
+    struct hf_params *p = &s->params;
+    p->model = HF_MODEL_LENS;
+    p->focus = camera->focus;
+    p->lens.f_number = camera->f_number;
+    p->lens.focal_length_mm = camera->focal_length_mm;
+    p->lens.sensor_width_mm = camera->sensor_width_mm > 0 ? camera->sensor_width_mm : 36;
+}
+
 void bench_subject_close(struct bench_subject *s)
 {
     bench_workers_close(&s->workers);

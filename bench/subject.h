@@ -11,6 +11,8 @@
 // an error. Returns 0, or -1 with *error filled.
 int bench_subject_open(struct bench_subject *s, const struct bench_args *args, const struct bench_scene *scene,
                        struct tool_error *log, struct tool_error *error);
+// Let it be seen through a camera's lens.
+void bench_subject_lens(struct bench_subject *subject, const struct bench_camera *camera);
 void bench_subject_close(struct bench_subject *s);
 
 #endif

@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "metrics.h"
 #include "others.h"
+#include "peels.h"
 #include "subject.h"
 #include "truth.h"
 #include "write.h"
@@ -21,9 +22,7 @@ static int wanted(const struct bench_truth *t, int engine)
     return !t->args->engine_given || (int)t->args->params.engine == engine;
 }
 
-// Peak signal-to-noise ratio of the pictures clamped to 0..1 with the sRGB curve, and root mean square error of the
-// linear ones.
-static void distance(const float *a, const float *b, size_t n, double *psnr, double *rmse)
+void bench_truth_distance(const float *a, const float *b, size_t n, double *psnr, double *rmse)
 {
     double shown = 0, linear = 0;
     for (size_t i = 0; i < n; i++) {
@@ -47,7 +46,7 @@ static int measure_engine(struct bench_truth *t, int scene, int engine, struct b
         return -1;
     t->busy += bench_is_busy(&all);
     t->at[scene][engine].ms = all.median_ms;
-    distance(s->out.image.data[0], want, samples, &t->at[scene][engine].psnr, &t->at[scene][engine].rmse);
+    bench_truth_distance(s->out.image.data[0], want, samples, &t->at[scene][engine].psnr, &t->at[scene][engine].rmse);
     return 0;
 }
 
@@ -70,12 +69,7 @@ static int measure_scene(struct bench_truth *t, int i, struct tool_error *log, s
     if (!err)
         err = bench_subject_open(&subject, &args, &scene, log, error);
     if (!err) {
-        struct hf_params *p = &subject.params;
-        p->model = HF_MODEL_LENS;
-        p->focus = camera.focus;
-        p->lens.f_number = camera.f_number;
-        p->lens.focal_length_mm = camera.focal_length_mm;
-        p->lens.sensor_width_mm = camera.sensor_width_mm > 0 ? camera.sensor_width_mm : 36;
+        bench_subject_lens(&subject, &camera);
         t->threads = hf_context_threads(subject.context);
     }
     for (int e = 0; e < tool_engines() && !err; e++)
@@ -159,5 +153,7 @@ int bench_truth(struct bench_args *args, struct tool_error *error)
     struct bench_truth t;
     if (args->image || args->truth)
         return bench_score(args, error);
+    if (args->peels)
+        return bench_peels(args, error);
     return bench_truth_measure(&t, args, error) ? -1 : bench_write_report(args, table, json, &t, error);
 }

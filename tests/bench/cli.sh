@@ -38,6 +38,11 @@ bad "--image|--truth" truth --image a.exr
 bad "missing.exr" truth --image missing.exr --truth missing.exr
 bad "lights.exr|1280 x 720|640 x 360" truth --image "$source_root/images/lights-before.png" \
     --truth "$source_root/images/lights.exr"
+bad "--surfaces|layers|chapter" passes --surfaces 2
+bad "1 to 3" passes --engine layers --surfaces 4
+bad "lights.peel1.exr" passes --engine layers --surfaces 2 --scene "$source_root/images/lights.exr"
+mkdir flat
+bad "peel1.exr|flat" truth --peels --images flat
 bad "--ladder|--setting" tradeoff --ladder x.h --setting "--engine gaussian"
 bad "--readme|missing.md" tradeoff --readme missing.md
 echo 'no marks' >plain.md
@@ -85,6 +90,9 @@ result "--readme" $?
 result "--help=man" $?
 
 command -v python3 >/dev/null || { skip "no python3 for the JSON"; finish; }
+"$bench" passes --engine layers --surfaces 3 --size 64x64 --frames 1 >out 2>err && grep -q ' 3 surfaces, 1 frames' out &&
+    awk '$1 == "Known" { known = $2 } END { exit !(known > 0) }' out
+result "passes --surfaces" $?
 "$bench" formats --size 96x54 --threads 1 --json formats.json >out 2>err && [ "$(grep -c '^rgba8 ' out)" -eq 2 ] && python3 -c '
 import json
 d = json.load(open("formats.json"))
