@@ -28,8 +28,8 @@ struct view_aperture {
 
 struct view_app {
     GtkApplication *application;
-    GtkWidget *window, *canvas, *notice, *notice_text, *value, *state, *zoom, *exposure, *progress, *shows, *buffers,
-        *views;
+    GtkWidget *window;  // NULL: closed; what was under way may end after that
+    GtkWidget *canvas, *notice, *notice_text, *value, *state, *zoom, *exposure, *progress, *shows, *buffers, *views;
     struct view_panel *panel;
     struct view_timeline *timeline;
     GtkWidget *profiler;

@@ -81,7 +81,7 @@ static gboolean on_time(gpointer data)
 {
     struct view_app *app = data;
     struct view_bench *b = app->bench;
-    if (!b || !b->tick)
+    if (!b || !b->tick || !app->window)
         return G_SOURCE_REMOVE;
     while (b->step < STEPS + WARM && tool_now_ms() >= b->start + b->step * STEP_MS)
         pull(app);

@@ -299,7 +299,7 @@ static gboolean on_settled(gpointer data)
 {
     struct view_app *app = data;
     app->reload = 0;
-    const int changed = app->picture ? view_picture_changed(app->picture) : 0;
+    const int changed = app->window && app->picture ? view_picture_changed(app->picture) : 0;
     if (changed == 2)
         view_app_tell(app, "%s is gone; the picture is the one that was read before.", app->picture->args.input);
     else if (changed) {
@@ -368,6 +368,8 @@ static void on_loaded(GObject *source, GAsyncResult *result, gpointer data)
     struct view_app *app = data;
     struct load *l = g_task_get_task_data(G_TASK(result));
     (void)source;
+    if (!app->window)
+        return;
     const int current = app->loaded_by && !strcmp(l->loaded_by, app->loaded_by);
     if (l->ahead)
         app->reading_ahead = 0;

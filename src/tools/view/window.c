@@ -43,18 +43,21 @@ static void on_drawn(void *cookie, const struct view_result *result)
 
 static void on_failed(void *cookie)
 {
-    view_app_tell(cookie, "There is not enough memory to draw the picture.");
+    struct view_app *app = cookie;
+    if (app->window)
+        view_app_tell(app, "There is not enough memory to draw the picture.");
 }
 
 static void on_result(void *cookie, struct view_result *result)
 {
     struct view_app *app = cookie;
-    if (result->failed) {
-        view_app_tell(app, "%s", result->error.text);
-        view_result_free(result);
+    if (app->window && !result->failed) {
+        view_canvas_set_result(VIEW_CANVAS(app->canvas), result);
         return;
     }
-    view_canvas_set_result(VIEW_CANVAS(app->canvas), result);
+    if (app->window)
+        view_app_tell(app, "%s", result->error.text);
+    view_result_free(result);
 }
 
 // Where the canvas is on the screen, when the window's corner is the screen's: for tests.
@@ -389,7 +392,8 @@ static gboolean on_close(GtkWindow *window, gpointer data)
 gboolean view_window_close(gpointer data)
 {
     struct view_app *app = data;
-    gtk_window_close(GTK_WINDOW(app->window));
+    if (app->window)
+        gtk_window_close(GTK_WINDOW(app->window));
     return G_SOURCE_REMOVE;
 }
 
@@ -406,6 +410,7 @@ int view_window_make(struct view_app *app, struct tool_error *error)
         return -1;
     load_style();
     app->window = gtk_application_window_new(app->application);
+    g_object_add_weak_pointer(G_OBJECT(app->window), (gpointer *)&app->window);
     gtk_window_set_default_size(GTK_WINDOW(app->window), 1280, 800);
     if (app->own.dark)
         g_object_set(gtk_settings_get_default(), "gtk-application-prefer-dark-theme", TRUE, NULL);
