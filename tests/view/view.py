@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""hyperfocal-view by real events on a screen in memory. Usage: view.py VIEW HYPERFOCAL SOURCE_ROOT"""
+"""hyperfocal-view by real events on a screen in memory. Usage: view.py VIEW HYPERFOCAL SOURCE_ROOT NO_MEMORY"""
 import os
 import shlex
 import shutil
@@ -10,7 +10,7 @@ import tempfile
 import driver
 
 tests = driver.Tests()
-view_exe, command_exe, root = [os.path.abspath(a) for a in sys.argv[1:4]]
+view_exe, command_exe, root, no_memory = [os.path.abspath(a) for a in sys.argv[1:5]]
 PHOTO = [root + "/images/lights-before.png", "--depth-file", root + "/images/lights-depth.png", "--depth-type", "inverse",
          "--near", "1.5", "--far", "60", "--fstop", "0.37", "--focal-length", "50"]
 
@@ -196,6 +196,20 @@ def check_errors(screen, folder):
     tests.check("a wrong option too", wrong.returncode == 1 and wrong.stderr.count("\n") == 1, wrong.stderr)
 
 
+def check_memory(screen):
+    """Planes that find no memory, and a canvas that finds none: a sentence each, and the window lives."""
+    with open(view_exe, "rb") as program:
+        if b"__asan_init" in program.read():  # a sanitizer has a malloc of its own
+            return
+    view = driver.View(screen, view_exe, root + "/images/lights.exr")
+    canvas = driver.numbers(view.drawn()["canvas"])
+    view.kill()
+    for size, said in ((1280 * 720 * 4, "out of memory"), (int(canvas[2]) * int(canvas[3]) * 4, "not enough memory")):
+        view = driver.View(screen, view_exe, root + "/images/lights.exr", LD_PRELOAD=no_memory, HF_NO_MEMORY=str(size))
+        tests.check("no memory is a sentence", said in view.wait("^notice (.*)").group(1), view.said)
+        tests.check("and the window lives", view.close() == 0 and not view.errors, view.errors)
+
+
 def main():
     tool = driver.missing()
     if tool:
@@ -210,6 +224,7 @@ def main():
             check_looking(screen)
             check_demo(screen, folder)
             check_errors(screen, folder)
+            check_memory(screen)
     finally:
         screen.close()
     tests.end()
