@@ -47,7 +47,12 @@ static void draw_curve(cairo_t *c, const struct view_profile *p, double x, doubl
         cairo_set_source_rgba(c, ink->red, ink->green, ink->blue, 0.3);
         cairo_rectangle(c, x, y, width, 1);
         cairo_fill(c);
+        gdk_cairo_set_source_rgba(c, ink);
+        g_snprintf(words, sizeof(words), "%d a second", 60 / i);
+        if (most < 240)  // else they would stand on each other
+            text(c, x + width - 76, y - 3, words);
     }
+    cairo_new_path(c);  // text has moved the pen
     cairo_set_source_rgb(c, 0.9, 0.35, 0.1);
     cairo_set_line_width(c, 1.5);
     for (int i = 0; i < n; i++)

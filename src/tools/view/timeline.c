@@ -240,13 +240,18 @@ static void draw_curves(GtkDrawingArea *area, cairo_t *c, int width, int height,
     cairo_rectangle(c, x - 0.5, 0, 1, height);
     cairo_fill(c);
     cairo_set_line_width(c, 1.5);
+    cairo_set_font_size(c, 11);
+    if (!view_keys_any(&app->model.now.keys)) {
+        gdk_cairo_set_source_rgba(c, &text);
+        cairo_move_to(c, 8, 12);
+        cairo_show_text(c, "A diamond beside a value sets a key at this frame. From key to key the value changes.");
+    }
     double at = 8;
     for (int k = 0; k < CLI_KEY_COUNT; k++) {
         if (!app->model.now.keys.column[k].count || !view_keys_name(k))
             continue;
         draw_column(c, app, k, width, height);
         cairo_text_extents_t size;
-        cairo_set_font_size(c, 11);
         cairo_text_extents(c, view_keys_name(k), &size);
         cairo_move_to(c, at, 12);
         cairo_show_text(c, view_keys_name(k));
@@ -341,7 +346,6 @@ void view_timeline_refresh(struct view_app *app)
     g_snprintf(text, sizeof(text), "frame %g, %d of %d, %.4g a second", view_timeline_frame(app), app->frame + 1,
                frames_of(app), rate_of(app));
     gtk_label_set_text(GTK_LABEL(t->label), text);
-    gtk_widget_set_visible(t->curves, view_keys_any(&app->model.now.keys));
     gtk_widget_queue_draw(t->curves);
 }
 
