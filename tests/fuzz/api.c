@@ -525,11 +525,11 @@ static void *any_sized(struct bytes *b, const void *right, size_t own)
     return p;
 }
 
-// The library's own size must do for what it fills, and so must larger ones.
-static void filled(void *p, size_t own, int err)
+// The size of the first release must do for what the library fills, and so must larger ones.
+static void filled(void *p, size_t first, int err)
 {
     const size_t size = *(const size_t *)p;
-    MUST(err == (size >= own && size <= 65536 ? HF_OK : HF_ERR_ARG));
+    MUST(err == (size >= first && size <= 65536 ? HF_OK : HF_ERR_ARG));
     free_block(p);
 }
 
@@ -537,7 +537,7 @@ static void fill_any_sizes(struct hf_context *c, struct bytes *b)
 {
     struct hf_params params = hf_default_params();
     struct hf_report *report = any_sized(b, NULL, sizeof *report);
-    filled(report, sizeof *report, hf_get_report(c, report));
+    filled(report, offsetof(struct hf_report, guessed), hf_get_report(c, report));
     struct hf_params *used = any_sized(b, NULL, sizeof *used);
     filled(used, sizeof *used, hf_get_used(c, used, NULL));
     struct hf_resolved *resolved = any_sized(b, NULL, sizeof *resolved);
