@@ -15,6 +15,7 @@ has_helper=
 mkdir s d other
 for i in 1 2 3 11 12 19; do cp plain.exr s/s.$i.exr; done
 for i in 1 2 3; do cp plain.exr d/d.$i.exr; done
+mkdir reversed && for i in 3 2 1; do cp plain.exr reversed/d.$i.exr; done
 ln -s s linked
 ln -s ../s/s.3.exr other/o.2.exr
 ln s/s.3.exr other/h.2.exr
@@ -25,6 +26,8 @@ ln s/s.3.exr other/h.2.exr
     bad 1 "s/s.2.exr|other/o.2.exr|s/s.3.exr" 's/s.#.exr' -o 'other/o.#.exr' $look
     bad 1 "s/s.2.exr|other/h.2.exr|s/s.3.exr" 's/s.#.exr' -o 'other/h.#.exr' $look
     bad 1 "s/s.1.exr|d/d.1.exr|--depth-file|of s/s.1.exr" s/s.1.exr s/s.2.exr -o 'd/d.@.exr' $look --depth-file 'd/../d/d.@.exr'
+    # The first frame is named, whichever file has the smaller inode.
+    bad 1 "s/s.1.exr|reversed/d.1.exr|of s/s.1.exr" s/s.1.exr s/s.2.exr -o 'reversed/d.@.exr' $look --depth-file 'reversed/d.@.exr'
     bad 1 "s/s.1.exr|d/d.11.exr|--depth-file|of s/s.11.exr" 's/s.#.exr' -o 'd/d.1#.exr' $look --depth-file 'd/d.#.exr' \
         --frames 1,11
     bad 1 "s/s.1.exr|s/s.11.exr" 's/s.#.exr' -o 's/s.1#.exr' $look --chunk 1/3 --frames 1,2,11

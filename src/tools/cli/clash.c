@@ -144,20 +144,41 @@ static int same_name(const char *a, const char *b)
     return same;
 }
 
-// roles: all uses of one file, sorted by role. Fails if the last of them writes the file and another one loses by
-// that.
-static int check_file(const struct entry *roles, int count, const char *option, struct tool_error *error)
+// A file that is written and lost by that: who writes it, and who else uses it. writer NULL: none.
+struct clash {
+    const struct entry *writer, *other;
+    int over_itself;  // the frame that writes the file also reads it
+};
+
+// roles: all uses of one file, sorted by role. There is a clash if the last of them writes the file and another one
+// loses by that.
+static struct clash check_file(const struct entry *roles, int count)
 {
     const struct entry *writer = &roles[count - 1];
-    int itself = 0;  // the frame that writes the file also reads it
+    int itself = 0;
     for (int i = 0; i < count; i++)
         itself |= writer->role == OUTPUT && roles[i].role == INPUT && roles[i].frame == writer->frame;
     for (int i = 0; i + 1 < count && writer->role >= OUTPUT; i++) {
         const struct entry *other = &roles[i];
         if (other->role != OUTPUT || writer->role != OUTPUT || same_name(other->path, writer->path))
-            return complain(writer, other, itself && other->role == INPUT, option, error);
+            return (struct clash){writer, other, itself && other->role == INPUT};
     }
-    return 0;
+    return (struct clash){NULL, NULL, 0};
+}
+
+// The clash of the first frame that writes. The list is sorted by inodes, whose order is the file system's: the message
+// must not depend on it.
+static struct clash first_clash(const struct list *list)
+{
+    struct clash first = {NULL, NULL, 0};
+    for (int from = 0, to; from < list->count; from = to) {
+        for (to = from + 1; to < list->count && !same_or_order(&list->entries[from], &list->entries[to]);)
+            to++;
+        const struct clash clash = check_file(&list->entries[from], to - from);
+        if (clash.writer && (!first.writer || clash.writer->frame < first.writer->frame))
+            first = clash;
+    }
+    return first;
 }
 
 int cli_check_clashes(const struct cli_shot *shot, const char *log_file, struct tool_error *error)
@@ -186,12 +207,9 @@ int cli_check_clashes(const struct cli_shot *shot, const char *log_file, struct 
         add(&list, jobs->list[i].output, OUTPUT, i, jobs->list[i].input);
     add(&list, log_file, LOG, -1, NULL);
     qsort(list.entries, (size_t)list.count, sizeof(*list.entries), by_file);
-    int status = 0;
-    for (int from = 0, to; from < list.count && !status; from = to) {
-        for (to = from + 1; to < list.count && !same_or_order(&list.entries[from], &list.entries[to]);)
-            to++;
-        status = check_file(&list.entries[from], to - from, shot->other_option, error);
-    }
+    const struct clash clash = first_clash(&list);
+    const int status =
+        clash.writer ? complain(clash.writer, clash.other, clash.over_itself, shot->other_option, error) : 0;
     for (int i = 0; i < list.count; i++)
         free(list.entries[i].owned);
     free(list.entries);
