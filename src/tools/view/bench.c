@@ -69,7 +69,7 @@ static void pull(struct view_app *app)
 {
     struct view_bench *b = app->bench;
     const double t = (double)b->step / (STEPS + WARM), s = 0.5 - 0.5 * cos(4 * M_PI * t);
-    b->asked[b->step] = app->event_ms = tool_now_ms();
+    b->asked[b->step] = app->event_ms = b->start + b->step * STEP_MS;
     b->latency[b->step] = -1;
     app->setup.params.focus = (float)(1 / (1 / NEAREST + s * (1 / FARTHEST - 1 / NEAREST)));
     view_app_ask(app, b->step + 1 < STEPS + WARM);
