@@ -39,7 +39,7 @@ void hf_scatter_slice_range(const struct hf_frame *f, struct hf_rect r, float *l
     const int x0 = hf_max(2 * (r.x0 - t->around_x), 0), x1 = hf_min(2 * (r.x1 + t->around_x), f->s->width);
     const int y0 = hf_max(2 * (r.y0 - t->around_y), 0), y1 = hf_min(2 * (r.y1 + t->around_y), f->s->height);
     float low = FLT_MAX, high = 0;
-    for (int y = y0; y < y1; y++) {
+    for (int y = y0; y < y1 && !hf_stopped(f->s->stop); y++) {
         const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y), *share = hf_back_shares(f, x0, y, x1 - x0);
         for (int x = 0; x < x1 - x0; x++) {
             const float v = radius[x] > 0 ? radius[x] : FLT_MAX;
@@ -77,7 +77,7 @@ void hf_scatter_slice_behind(const struct hf_frame *f, struct hf_rect r, const s
                              const struct hf_target *slice)
 {
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
-    for (int y = y0; y < y1; y++) {
+    for (int y = y0; y < y1 && !hf_stopped(f->s->stop); y++) {
         const ptrdiff_t at = (y - y0) * to->stride, from = (y - y0) * slice->stride;
         for (int x = 0; x < n; x++) {
             float *weight = &to->ch[3][at + x];

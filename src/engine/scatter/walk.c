@@ -241,7 +241,7 @@ static void splat_slice(struct walk *w, struct hf_rect r, const struct hf_target
         walk_level(w, &l, to);
     }
     for (int c = 0; c < 4; c++)
-        for (int y = y0; y < y1 && to->ch[c]; y++) {
+        for (int y = y0; y < y1 && to->ch[c] && !hf_stopped(s->stop); y++) {
             float *row = to->ch[c] + (ptrdiff_t)(y - y0) * to->stride;
             if (w->t->reach_x[w->field][0] < 0)
                 memset(row, 0, sizeof *row * (size_t)(x1 - x0));
