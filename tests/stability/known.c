@@ -39,6 +39,10 @@ static const struct known {
     {"hexagon", "a lamp behind", 188, &mixed},
     {"scatter", "a lamp behind", 152, &mixed},
     {"layers", "a lamp behind", 77.2, &mixed},
+    // In search.c.
+    {"layers best", "a step", 18.6, &patterns},
+    {"layers", "a step: exposure", 1.03, &unexplained},
+    {"layers ring", "a step: a depth sample", 3.34, &unexplained},
 };
 
 double known_bound(const struct run *r, const char *what, double bound, const char **why)

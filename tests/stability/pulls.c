@@ -52,11 +52,8 @@ static struct picture at(void *cookie, double t)
     return render_scene(w->r->c, w->s, &p);
 }
 
-// The reason of a larger bound, NULL for the usual one.
-static double allowed(const struct run *r, enum pulled pull, int lamps, const char **why)
+double step_bound(const struct hf_params *p, int lamps, const char **why)
 {
-    const struct hf_params *p = &r->subject->params;
-    (void)pull;
     *why = "half a code: what the smallest step of a float can make, see continuity.c";
     if (p->engine == HF_ENGINE_SCATTER && lamps) {
         // A sprite's radius steps by a 1024th, which at a radius of 15 moves its rim by 1 / 70 of a pixel; its rows end at
@@ -92,7 +89,7 @@ static void pull_one(const struct run *r, enum pulled pull, const struct scene *
     double (*distance)(const struct picture *a, const struct picture *b) = lamps ? exposed_distance : display_distance;
     char what[80];
     const char *why;
-    const double bound = allowed(r, pull, lamps, &why);
+    const double bound = step_bound(&r->subject->params, lamps, &why);
     const struct large_steps large = large_steps(at, distance, &w, pulls[pull].from, pulls[pull].to, steps);
     snprintf(what, sizeof what, "%s: jump, codes%s", pulls[pull].name, lamps ? " of the brightest around" : "");
     see_look(r, row_name(what), why, 0, bound, "%s", scene);
@@ -132,7 +129,7 @@ static void crossings(const struct run *r, const struct scene *s, const char *sc
     struct pulling w = {r, s, LENS_STOP};
     struct hf_params p = r->subject->params;
     const char *why;
-    const double bound = allowed(r, LENS_STOP, 0, &why);
+    const double bound = step_bound(&p, 0, &why);
     set_lens(&p, s->colour.width, 14);
     for (int sign = -1; sign <= 1; sign += 2)
         for (size_t k = 0; k < sizeof radii / sizeof *radii; k++) {

@@ -17,6 +17,7 @@
 //   pairs.c       exposure, mirrored, transposed
 //   known.c       what goes beyond the bounds there, how far and why
 //   lamps.c       lamps that move behind sharp edges, and noise of other seeds
+// search.c is a program of its own, which draws scenes, looks and steps at random.
 #ifndef HF_TESTS_STABILITY_H
 #define HF_TESTS_STABILITY_H
 
@@ -152,6 +153,9 @@ struct large_steps large_steps(struct picture (*at)(void *cookie, double t),
 double step_left(struct picture (*at)(void *cookie, double t),
                  double (*distance)(const struct picture *a, const struct picture *b), void *cookie, int halvings,
                  double *from, double *to);
+
+// The bound of such a change, and its reason; lamps: seen with the exposure of exposed_distance().
+double step_bound(const struct hf_params *p, int lamps, const char **why);
 
 // A copy of a row's name that lives as long as the program.
 const char *row_name(const char *name);
