@@ -41,7 +41,6 @@ static const struct known {
     {"layers", "a lamp behind", 77.2, &mixed},
     // In search.c.
     {"layers best", "a step", 18.6, &patterns},
-    {"layers", "a step: exposure", 1.03, &unexplained},
     {"layers ring", "a step: a depth sample", 3.34, &unexplained},
 };
 

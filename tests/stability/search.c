@@ -253,23 +253,35 @@ struct options {
     const char *engine;
 };
 
+// Draw a case and look for its jump; returns its part of its bound.
+static double try_case(struct hf_context *c, const struct options *o, const char *engine, unsigned seed)
+{
+    struct hard_case h = any_case(c, engine, seed);
+    const double bound = bound_of(&h);
+    double where, left = jump_of(&h, bound, &where);
+    CHECK_MSG(left <= bound, "--seed %u --cases 1%s%s: %s, %s jumps by %.3g codes at %.9g", seed,
+              engine ? " --engine " : "", engine ? engine : "", h.look.name, h.name, left, where);
+    if (o->verbose)
+        printf("%u: %s, %s: %.3g\n", seed, h.look.name, h.name, left);
+    scene_free(&h.scene);
+    return left / bound;
+}
+
 static void search(const struct options *o)
 {
+    // Cases that jumped once. A change of the drawing makes others of them.
+    static const struct {
+        const char *engine;
+        unsigned seed;
+    } mended[] = {{"layers", 10317}, {"layers", 11164}};
     const time_t begin = time(NULL);
     struct hf_context *c = context_new(HF_ISA_AUTO, 1, 0, 0);
     double worst = 0;
     int i = 0;
-    for (; (o->cases == 0 || i < o->cases) && (o->seconds == 0 || difftime(time(NULL), begin) < o->seconds); i++) {
-        struct hard_case h = any_case(c, o->engine, o->seed + (unsigned)i);
-        const double bound = bound_of(&h);
-        double where, left = jump_of(&h, bound, &where);
-        CHECK_MSG(left <= bound, "--seed %u --cases 1: %s, %s jumps by %.3g codes at %.9g", o->seed + (unsigned)i,
-                  h.look.name, h.name, left, where);
-        if (o->verbose)
-            printf("%u: %s, %s: %.3g\n", o->seed + (unsigned)i, h.look.name, h.name, left);
-        worst = fmax(worst, left / bound);
-        scene_free(&h.scene);
-    }
+    for (size_t k = 0; k < sizeof mended / sizeof *mended && o->seed == 1 && !o->engine; k++)
+        worst = fmax(worst, try_case(c, o, mended[k].engine, mended[k].seed));
+    for (; (o->cases == 0 || i < o->cases) && (o->seconds == 0 || difftime(time(NULL), begin) < o->seconds); i++)
+        worst = fmax(worst, try_case(c, o, o->engine, o->seed + (unsigned)i));
     printf("%d cases from seed %u on; the largest jump is %.3g of its bound\n", i, o->seed, worst);
     hf_close(&c);
 }

@@ -288,7 +288,10 @@ static double look_from(const struct frame *f, const struct grid *found, int x, 
 {
     double nearest = INFINITY;
     if (found)
-        return at(found, x, y)[WEIGHT] > 0 && at(found, x, y)[RADIUS] < -1 ? at(found, x, y)[RADIUS] / 2 : INFINITY;
+        // From a sixteenth of its quad on it counts as near as it is, and less before.
+        return at(found, x, y)[WEIGHT] > 0 && at(found, x, y)[RADIUS] < -1
+                   ? fmin(1, 16 * at(found, x, y)[WEIGHT]) * (at(found, x, y)[RADIUS] / 2 + 1) - 1
+                   : INFINITY;
     for (int i = 0; i < 4; i++)
         nearest = fmin(nearest, edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2)[RADIUS]);
     return nearest;

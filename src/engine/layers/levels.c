@@ -442,13 +442,16 @@ static void smooth_down(const struct band *b, int colour, int at, int y)
 
 // A near sample that was found takes the place of the visible one, and the next search looks behind it. That search
 // accepts only samples less than half as near, because it is the last: of three blades before a wall it must find the
-// wall. A found sample that is far or in focus needs none behind it; the far field's blur fills the gap there.
+// wall. A found sample that is far or in focus needs none behind it; the far field's blur fills the gap there. One that
+// covers little of its quad hides as little as one that is hardly near.
 static void look_behind(const struct band *b, int y)
 {
     const float *weight = b->found.weight + y * b->found.stride, *radius = b->found.radius + y * b->found.stride;
     float *nearest = b->nearest + (y - b->r.y0) * b->width - b->r.x0;
-    for (int x = b->r.x0; x < b->r.x1; x++)
-        nearest[x] = weight[x] > 0 && radius[x] < -1 ? radius[x] * 0.5f : HUGE_VALF;
+    for (int x = b->r.x0; x < b->r.x1; x++) {
+        const float part = hf_saturate(HF_LAYERS_WHOLE * weight[x]), half = radius[x] * 0.5f;
+        nearest[x] = !(part > 0) || radius[x] >= -1 ? HUGE_VALF : part < 1 ? part * (half + 1) - 1 : half;
+    }
 }
 
 // A sample behind one that is hardly near counts less, so nothing appears at once when the latter comes nearer.
