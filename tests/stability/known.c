@@ -13,6 +13,8 @@ static const char *const
     *const patterns = "known: best continues patterns by choices among what is around, which no_patterns leaves out",
     *const nodes = "known: a cat's eye has its shape at nodes, counted from the left and the top",
     *const unexplained = "known: not explained so far",
+    *const levels =
+        "known: what begins to be seen closely outweighs 256 times, for each level, what was found farther away",
     *const draws = "known: what is hidden is searched along rows and columns in turn";
 
 static const struct known {
@@ -41,7 +43,7 @@ static const struct known {
     {"layers", "a lamp behind", 77.2, &mixed},
     // In search.c.
     {"layers best", "a step", 18.6, &patterns},
-    {"layers ring", "a step: a depth sample", 3.34, &unexplained},
+    {"layers ring", "a step: a depth sample", 3.34, &levels},
 };
 
 double known_bound(const struct run *r, const char *what, double bound, const char **why)

@@ -165,8 +165,33 @@ static void crop(const struct run *r, enum stage stage)
     scene_free(&s);
 }
 
+// ---- corners ----
+
+// One near pixel in the corner of a frame in focus is no sign of an object as large as its blur. It may cover four pixels, as if
+// it were mirrored at both edges.
+static void corner(const struct run *r)
+{
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    const struct hf_depth depth = picture_radii(&radii);
+    struct hf_params p = r->subject->params;
+    double sum = 0;
+    p.max_radius = HF_DERIVE;
+    for (int c = 0; c < 3; c++)
+        colour.plane[c][0] = 1;
+    radii.plane[0][0] = -32;
+    struct picture out = render(r->c, &colour, &depth, &p);
+    for (size_t i = 0; i < samples_of(&out); i++)
+        sum += out.plane[1][i];
+    see_look(r, "a near pixel in a corner: pixels that it covers", "four: mirrored at both edges", sum, 4, "radius 32");
+    picture_free(&out);
+    picture_free(&colour);
+    picture_free(&radii);
+}
+
 void local_cases(const struct run *r)
 {
+    if (r->subject->params.engine == HF_ENGINE_LAYERS)
+        corner(r);
     for (int k = 0; k < (r->full ? (int)STAGE_NOISE + 1 : (int)STAGE_BLOCKS); k++)
         for (int lens = 0; lens < 2; lens++) {
             one_sample(r, (enum stage)k, lens);

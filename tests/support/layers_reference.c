@@ -47,6 +47,51 @@ static double part_of(const struct slice *s, double r)
 
 enum kind { SEEN, BEHIND, SHINE };
 
+// How much a sample of that radius, at an edge of the frame, counts beyond it: twice the depth at which its surface, of at
+// least half its radius and surely of a quarter, is seen inside, over its radius. Samples up to 2 pixels before the focus
+// count fully, from 4 on as is said here.
+static double part_beyond(const struct frame *f, double radius, int x, int y, int dx, int dy)
+{
+    const double near = fmin(fmax(-radius / 2 - 1, 0), 1);
+    double open = 1, deep = 0;
+    for (int i = 0; near > 0 && i < -radius && i < (dx ? f->width : f->height); i++) {
+        double here = 0;
+        for (int k = 0; k < 2; k++) {
+            const double *s = at(k ? &f->mixed : &f->seen, x + i * dx, y + i * dy);
+            here += s[WEIGHT] > 0 ? s[WEIGHT] * fmin(fmax(4 * s[RADIUS] / radius - 1, 0), 1) : 0;
+        }
+        open = fmin(open, here);
+        deep += open * fmin(-radius - i, 1);
+    }
+    return near > 0 ? 1 - near * (1 - fmin(2 * deep / -radius, 1)) : 1;
+}
+
+// How much a visible or mixed sample at (x, y) counts there, which may be beyond the frame.
+static double counts(const struct frame *f, const double *sample, int x, int y)
+{
+    const int inside_x = clamp(x, 0, f->width - 1), inside_y = clamp(y, 0, f->height - 1);
+    double part = 1;
+    if (!(sample[WEIGHT] > 0))
+        return 0;
+    // At odd sizes the last column or row is doubled first.
+    if (x < 0 || x >= (f->width + 1) / 2 * 2)
+        part *= part_beyond(f, sample[RADIUS], inside_x, inside_y, x < 0 ? 1 : -1, 0);
+    if (y < 0 || y >= (f->height + 1) / 2 * 2)
+        part *= part_beyond(f, sample[RADIUS], inside_x, inside_y, 0, y < 0 ? 1 : -1);
+    return part;
+}
+
+// What lies before a radius, as layers_reference_before().
+static double before_beyond(const struct frame *f, int x, int y, double radius)
+{
+    double sum = 0;
+    for (int k = 0; k < 2; k++) {
+        const double *s = edge(k ? &f->mixed : &f->seen, x, y), part = counts(f, s, x, y);
+        sum += part > 0 ? part * s[WEIGHT] * layers_reference_hides(radius - s[RADIUS]) : 0;
+    }
+    return sum;
+}
+
 // The hidden sample of a quad as that of pixel (x, y): its weight goes to the parts that lie before it, and is at most
 // theirs.
 static void spread(const struct frame *f, const struct grid *set, int x, int y, double *out)
@@ -55,7 +100,7 @@ static void spread(const struct frame *f, const struct grid *set, int x, int y, 
     double before = 0, own = 0;
     memcpy(out, edge(set, left / 2, top / 2), SAMPLE * sizeof *out);
     for (int i = 0; i < 4; i++) {
-        const double w = layers_reference_before(f, left + i % 2, top + i / 2, out[RADIUS]);
+        const double w = before_beyond(f, left + i % 2, top + i / 2, out[RADIUS]);
         before += w / 4;
         own = left + i % 2 == x && top + i / 2 == y ? w : own;
     }
@@ -76,7 +121,8 @@ static void add_sources(const struct frame *f, const struct slice *s, const stru
             }
             double *out =
                 at(to, x >= 0 ? x >> apart : -((-x - 1) >> apart) - 1, y >= 0 ? y >> apart : -((-y - 1) >> apart) - 1);
-            const double part = v[WEIGHT] > 0 ? part_of(s, v[RADIUS]) / pow(4, apart) : 0;
+            const double all = set == &f->seen || set == &f->mixed ? counts(f, v, x, y) : 1;
+            const double part = v[WEIGHT] > 0 ? all * part_of(s, v[RADIUS]) / pow(4, apart) : 0;
             const double w = part * (kind == SHINE ? v[SHARE] : v[WEIGHT]);
             const double dim = kind == SEEN && light ? part * v[SHARE] : 0;
             for (int c = 0; c < f->channels; c++)

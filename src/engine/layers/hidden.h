@@ -112,6 +112,8 @@ size_t hf_layers_known_floats(const struct hf_layers *l, int width, int height);
 void hf_layers_take_edges(const struct hf_frame *f, struct hf_rect r);
 // Set all colours of a buffer of samples in r, half-resolution pixels: 1 says that they are known, 0 that they are guesses.
 void hf_layers_set_colours(const struct hf_frame *f, int buf, struct hf_rect r, float to);
+// Weigh the samples that stand beyond the frame, where r touches its edges, by how much of their surface the frame shows.
+void hf_layers_bound_border(const struct hf_frame *f, struct hf_rect r);
 // How far around a pixel the search for hidden samples reaches, half-resolution pixels.
 int hf_layers_hidden_reach(const struct hf_layers *l);
 

@@ -521,9 +521,12 @@ static void find_hidden(const struct hf_frame *f, struct hf_rect r)
 
 void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    if (!hf_layers(f->s)->levels)
+    const int levels = hf_layers(f->s)->levels;
+    if (levels)
+        find_hidden(f, r);
+    hf_layers_bound_border(f, r);
+    if (!levels)
         return;
-    find_hidden(f, r);
     if (hf_layers(f->s)->guessed) {
         hf_layers_set_colours(f, HF_LAYERS_BUF_HIDDEN, r, 0);
         hf_layers_set_colours(f, HF_LAYERS_BUF_BEYOND, r, 0);

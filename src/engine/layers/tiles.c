@@ -50,8 +50,10 @@ void hf_layers_mark_plain(const struct hf_cell *c)
             uint64_t shares = 0;
             for (int i = 0; i < l->share_words; i++)
                 shares |= l->share_marks[at * l->share_words + i];
+            const int x = c->x0 + tx * TILE, y = c->y0 + ty * TILE;
+            const int inside = x >= 0 && y >= 0 && x + TILE <= l->width && y + TILE <= l->height;  // see border.c
             *hf_layers_map_at(&c->plain, tx, ty) =
-                (uint8_t)((mixed.low > mixed.high ? WHOLE : 0) | (shares ? 0 : DULL));
+                (uint8_t)((inside && mixed.low > mixed.high ? WHOLE : 0) | (shares ? 0 : DULL));
         }
 }
 
