@@ -219,6 +219,37 @@ static void test_hidden(void)
     CHECK_MSG(green(&out[0]) > 0.5f, "peels: only %g of what the bar hides", green(&out[0]));
 }
 
+// Behind the bar a part of the wall opens on something farther, which no lens sees past the bar. What a lens sees of the wall
+// beside that part, in the same 2 x 2 pixels, must not go with it: the wall is in focus there, so the opening changes nothing
+// outside of itself but for 64 roundings of sums in the slices and what a mean of 2 x 2 pixels takes along, below 2 %.
+static void test_opening(void)
+{
+    const struct hf_layer two[] = {layer_of(&whole, HF_LAYER_WHOLE), layer_of(&peel, HF_LAYER_PEEL)};
+    const int from = W / 2 - 2, to = W / 2 + 3;
+    params.lens.f_number = 0.05f;
+    for (int open = 0; open < 2; open++) {
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++) {
+                const float a = front.rgba[4 * (y * W + x) + 3];
+                const int hole = open && x >= from && x < to;
+                set(&whole, x, y, 0.8f * a, 0.1f * a + (1 - a) * 0.7f, 0.1f * a + (1 - a) * 0.7f, 1, a >= 0.5f ? 2 : 6);
+                set(&peel, x, y, 0, 0.7f, 0.7f, a, hole ? 60 : 6);
+            }
+        CHECK_INT(render(&out[open], two, 2), HF_OK);
+    }
+    float most = 0;
+    for (int y = 8; y < H - 8; y++)
+        for (int x = from - 4; x < to + 4; x++)
+            if (x < from || x >= to)
+                for (int c = 0; c < 3; c++) {
+                    const int at = 4 * (y * W + x) + c;
+                    most = fmaxf(fabsf(out[0].rgba[at] - out[1].rgba[at]), most);
+                }
+    CHECK_MSG(most < 0.02f, "a hidden opening changes what is beside it by %g", most);
+    params.lens.f_number = 0.5f;
+    paint();
+}
+
 // Where all surfaces have one colour and fill the frame, so has the result: to 64 roundings of sums in the slices.
 static void test_constant(void)
 {
@@ -305,6 +336,7 @@ int main(void)
         test_guessed();
     }
     params.layers.quality = HF_LAYERS_STANDARD;
+    test_opening();
     test_same_blur();
     test_budget();
     test_refused();

@@ -10,15 +10,21 @@
 #include "engine/layers/hidden.h"
 #include "pixel/pass_c.h"
 
+// The four samples of a quad may be of two surfaces, one of which a lens sees and the other not: where one ends behind what
+// hides both. So the nearest and the farthest of them are looked at, and those between lie between.
+enum { NEAREST, FARTHEST, SIDES };
+
 // A band of quads. farthest: the largest visible radius within a distance that grows from level to level. Of each
-// surface and quad: how far a lens sees past what hides it, in quads; the least radius that leaves it in view; and
-// whether some does, 0 to 1.
+// surface and quad, for either side: how far a lens sees past what hides it, in quads; the least radius that leaves it in
+// view; and whether some does, 0 to 1. sides: 1 where no quad of the band has two.
 struct band {
     const struct hf_frame *f;
     struct hf_rect r;
     int reach;
     ptrdiff_t wide, stride;  // of farthest, and of the others
-    float *farthest, *across, *apart[HF_MOST_BEHIND], *least[HF_MOST_BEHIND], *open[HF_MOST_BEHIND];
+    float *farthest, *across, *apart[HF_MOST_BEHIND][SIDES], *least[HF_MOST_BEHIND][SIDES],
+        *open[HF_MOST_BEHIND][SIDES];
+    int sides[HF_MOST_BEHIND];
 };
 
 static size_t wide_floats(const struct hf_layers *l, int width)
@@ -31,7 +37,8 @@ size_t hf_layers_known_floats(const struct hf_layers *l, int width, int height)
     if (!l->known)
         return 0;
     const size_t rows = (size_t)height + 2 * (size_t)hf_layers_hidden_reach(l);
-    return 2 * wide_floats(l, width) * rows + (size_t)(3 * HF_MOST_BEHIND) * (size_t)(width + HF_PAD) * (size_t)height;
+    return 2 * wide_floats(l, width) * rows +
+           (size_t)(3 * SIDES * HF_MOST_BEHIND) * (size_t)(width + HF_PAD) * (size_t)height;
 }
 
 static struct band place(const struct hf_frame *f, struct hf_rect r)
@@ -46,10 +53,11 @@ static struct band place(const struct hf_frame *f, struct hf_rect r)
     b.farthest = memory + b.reach * b.wide + b.reach;
     b.across = b.farthest + all;
     memory += 2 * all;
-    for (int k = 0; k < HF_MOST_BEHIND; k++, memory += 3 * plane) {
-        b.apart[k] = memory;
-        b.least[k] = memory + plane;
-        b.open[k] = memory + 2 * plane;
+    for (int i = 0; i < SIDES * HF_MOST_BEHIND; i++, memory += 3 * plane) {
+        const int k = i / SIDES, side = i % SIDES;
+        b.apart[k][side] = memory;
+        b.least[k][side] = memory + plane;
+        b.open[k][side] = memory + 2 * plane;
     }
     return b;
 }
@@ -60,37 +68,55 @@ static float before_of(const struct hf_known *known, int k, ptrdiff_t at, float 
     return k > 0 && known->behind[k - 1].weight[at] > 0 ? fmaxf(known->behind[k - 1].radius[at], visible) : visible;
 }
 
+// Samples of a quad this near to each other are of one surface.
+static const float ONE_SURFACE = 0.25f;
+
 // Note what the samples of a row of quads need.
-static void look_row(const struct band *b, int k, int y)
+static void look_row(struct band *b, int k, int y)
 {
     const struct hf_frame *f = b->f;
     const struct hf_known *known = hf_layers(f->s)->given;
-    float *apart = b->apart[k] + (y - b->r.y0) * b->stride, *least = b->least[k] + (y - b->r.y0) * b->stride;
-    memset(apart, 0, sizeof *apart * (size_t)(b->r.x1 - b->r.x0));
-    memset(b->open[k] + (y - b->r.y0) * b->stride, 0, sizeof *apart * (size_t)(b->r.x1 - b->r.x0));
+    const ptrdiff_t to = (y - b->r.y0) * b->stride;
+    const size_t bytes = sizeof(float) * (size_t)(b->r.x1 - b->r.x0);
+    for (int side = 0; side < SIDES; side++) {
+        memset(b->apart[k][side] + to, 0, bytes);
+        memset(b->least[k][side] + to, 0, bytes);
+        memset(b->open[k][side] + to, 0, bytes);
+    }
     for (int py = 2 * y; py < hf_min(2 * y + 2, f->s->height); py++) {
         const ptrdiff_t row = py * known->stride;
         const float *weight = known->behind[k].weight + row, *radius = known->behind[k].radius + row;
         const float *visible = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 0, py);
         for (int x = 2 * b->r.x0; x < hf_min(2 * b->r.x1, f->s->width); x++) {
-            const int q = x / 2 - b->r.x0;
             const float d = weight[x] > 0 ? (radius[x] - before_of(known, k, row + x, visible[x])) * 0.5f : 0;
-            least[q] = d > apart[q] ? radius[x] - 1 : least[q];
-            apart[q] = d > apart[q] ? d : apart[q];
+            if (!(d > 0))
+                continue;
+            for (int side = 0; side < SIDES; side++) {
+                float *apart = b->apart[k][side] + to + x / 2 - b->r.x0,
+                      *least = b->least[k][side] + to + x / 2 - b->r.x0;
+                const float before = side == NEAREST ? *least - (radius[x] - 1) : radius[x] - 1 - *least;
+                if (!(*apart > 0) || before > ONE_SURFACE || (before >= -ONE_SURFACE && d > *apart)) {
+                    *least = radius[x] - 1;
+                    *apart = d;
+                }
+            }
         }
     }
+    for (int x = 0; x < b->r.x1 - b->r.x0; x++)
+        if (b->apart[k][0][to + x] > 0 && b->least[k][FARTHEST][to + x] > b->least[k][NEAREST][to + x] + ONE_SURFACE)
+            b->sides[k] = SIDES;
 }
 
 // Test whether something within `from` quads leaves the samples in view; it counts fully for those that a lens sees by
 // as much, and not at all for those it sees by less than `before`.
-static void test(const struct band *b, int k, int before, int from)
+static void test(const struct band *b, int k, int side, int before, int from)
 {
     const float scale = from > before ? 1 / (float)(from - before) : 1;
     for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
         const ptrdiff_t row = (y - b->r.y0) * b->stride;
-        const float *apart = b->apart[k] + row, *least = b->least[k] + row,
+        const float *apart = b->apart[k][side] + row, *least = b->least[k][side] + row,
                     *farthest = b->farthest + (y - b->r.y0) * b->wide;
-        float *open = b->open[k] + row;
+        float *open = b->open[k][side] + row;
         for (int x = 0; x < b->r.x1 - b->r.x0; x++) {
             const float reached = from > 0 ? hf_saturate((apart[x] - (float)before) * scale) : 1;
             const float v = reached * (1 - hf_layers_hides(least[x] - farthest[x]));
@@ -122,7 +148,7 @@ static void grow(const struct band *b, int step, int have)
 }
 
 // Find which samples a lens can see.
-static void find_open(const struct band *b)
+static void find_open(struct band *b)
 {
     const struct hf_buf *quads = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
     const int count = hf_layers(b->f->s)->given->count;
@@ -130,16 +156,19 @@ static void find_open(const struct band *b)
     for (int y = b->r.y0 - b->reach; y < b->r.y1 + b->reach && !hf_stopped(b->f->s->stop); y++)
         memcpy(b->farthest + (y - b->r.y0) * b->wide - b->reach, hf_at(quads, 1, b->r.x0 - b->reach, y),
                sizeof(float) * (size_t)(b->r.x1 - b->r.x0 + 2 * b->reach));
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; k++) {
+        b->sides[k] = 1;
         for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
             look_row(b, k, y);
-            for (int x = 0; x < b->r.x1 - b->r.x0; x++)
-                most = fmaxf(b->apart[k][(y - b->r.y0) * b->stride + x], most);
+            for (int i = 0; i < SIDES * (b->r.x1 - b->r.x0); i++)
+                most = fmaxf(b->apart[k][i % SIDES][(y - b->r.y0) * b->stride + i / SIDES], most);
         }
+    }
     // Distances 0, 1, 3, 7 and so on.
     for (int from = 0, before = 0, step = 1; !hf_stopped(b->f->s->stop); step *= 2) {
         for (int k = 0; k < count; k++)
-            test(b, k, before, from);
+            for (int side = 0; side < b->sides[k]; side++)
+                test(b, k, side, before, from);
         if ((float)from >= most || from + step > b->reach)
             break;
         grow(b, step, b->reach - from);
@@ -199,31 +228,54 @@ static float within(float v, float largest)
     return v < -largest ? -largest : v < largest ? v : largest;
 }
 
+// How far a quad's samples of radius r are in view, 0 to 1. What is one surface with the nearest sample is seen as that.
+static float in_view(const struct band *b, int k, ptrdiff_t quad, float r)
+{
+    const float near = b->open[k][NEAREST][quad];
+    if (b->sides[k] == 1)
+        return near;
+    const float behind = hf_saturate((r - 1 - b->least[k][NEAREST][quad]) / ONE_SURFACE - 1);
+    return near + behind * (b->open[k][FARTHEST][quad] - near);
+}
+
+// How much of the colour of a pixel's known surface is that of what is visible beside an edge in the pixel. A peel's colour
+// there is a mixture: where the nearest object fills the pixel its second surface, elsewhere what is behind the visible one.
+// If the visible part belongs to the same surface, its share of the mixture has the wrong colour. Measured: 44.65 dB for
+// 44.52 on `fence`, and no pale lines where near bars ended.
+static float beside(const struct seen *s, int x, float r)
+{
+    return s->weight[1][x] > 0 ? s->weight[1][x] * hf_saturate(2 - 2 * fabsf(s->radius[1][x] - r)) : 0;
+}
+
 // Replace guesses by a known surface.
 static void take_known(const struct band *b, int k, const struct seen *seen, int y, float *const out[6])
 {
     const struct hf_frame *f = b->f;
     const struct hf_surface *known = &hf_layers(f->s)->given->behind[k];
-    const float *open = b->open[k] + (y / 2 - b->r.y0) * b->stride;
+    const ptrdiff_t row = (y / 2 - b->r.y0) * b->stride;
     const int x0 = 2 * b->r.x0, n = hf_min(2 * b->r.x1, f->s->width) - x0;
     const ptrdiff_t at = y * hf_layers(f->s)->given->stride + x0;
     const float largest = hf_layers(f->s)->largest;
-    const int guessed = hf_layers(f->s)->guessed;
+    const int guessed = hf_layers(f->s)->guessed, edges = hf_layers(f->s)->given->edges;
+    float *mixed[6] = {NULL};
+    planes_at(f, HF_LAYERS_BUF_MIXED, HF_LAYERS_BUF_MIXED_AT, x0, y, mixed);
     for (int i = 0; i < n; i++) {
         const float all = known->weight[at + i];
         if (!(all > 0))
             continue;
         const float r = known->radius[at + i], most = cover(seen, i, r);
         const float apart = most > 0 ? r - before_of(hf_layers(f->s)->given, k, at + i, seen->radius[0][i]) : NARROW;
-        float view = open[i / 2];
+        float view = in_view(b, k, row + i / 2, r);
         if (apart < NARROW) {
             const float part = hf_saturate(2 - apart * (2.0f / NARROW));
             view = view + part * (narrow(f, x0 + i, y, apart > 0 ? apart : 0, r) - view);
         }
         out[4][i] = (all < most ? all : most) * view;
         out[5][i] = r;
+        const float same = edges ? 0 : beside(seen, i, r);
         for (int c = 0; c < f->s->channels; c++) {
-            out[c][i] = guessed ? 1 : within(known->colour[c][at + i] / all, largest);
+            const float v = within(known->colour[c][at + i] / all, largest);
+            out[c][i] = guessed ? 1 : v + same * (mixed[c][i] - v);
         }
     }
 }
@@ -264,7 +316,7 @@ void hf_layers_known_pass(const struct hf_frame *f, struct hf_rect r)
 {
     if (!hf_layers(f->s)->known)
         return;
-    const struct band b = place(f, r);
+    struct band b = place(f, r);
     find_open(&b);
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
         make_row(&b, y);
