@@ -14,15 +14,20 @@
 // hides both. So the nearest and the farthest of them are looked at, and those between lie between.
 enum { NEAREST, FARTHEST, SIDES };
 
-// A band of quads. farthest: the largest visible radius within a distance that grows from level to level. Of each
+// A lens that sees little past an edge needs pixels, not quads: up to NARROW pixels each one around is tested. From half
+// of that on quads begin to count.
+enum { NARROW = 8 };
+
+// A band of quads. away: the distance of a pixel so many columns and rows away. farthest: the largest visible radius within a distance that grows from level to level. Of each
 // surface and quad, for either side: how far a lens sees past what hides it, in quads; the least radius that leaves it in
-// view; and whether some does, 0 to 1. sides: 1 where no quad of the band has two.
+// view; and whether some does, 0 to 1. around: the largest visible radius of all pixels that narrow() looks at. sides: 1 where no quad of the band has two.
 struct band {
     const struct hf_frame *f;
     struct hf_rect r;
     int reach;
     ptrdiff_t wide, stride;  // of farthest, and of the others
-    float *farthest, *across, *apart[HF_MOST_BEHIND][SIDES], *least[HF_MOST_BEHIND][SIDES],
+    float away[NARROW + 2][NARROW + 2];
+    float *farthest, *across, *around, *apart[HF_MOST_BEHIND][SIDES], *least[HF_MOST_BEHIND][SIDES],
         *open[HF_MOST_BEHIND][SIDES];
     int sides[HF_MOST_BEHIND];
 };
@@ -38,7 +43,7 @@ size_t hf_layers_known_floats(const struct hf_layers *l, int width, int height)
         return 0;
     const size_t rows = (size_t)height + 2 * (size_t)hf_layers_hidden_reach(l);
     return 2 * wide_floats(l, width) * rows +
-           (size_t)(3 * SIDES * HF_MOST_BEHIND) * (size_t)(width + HF_PAD) * (size_t)height;
+           (size_t)(3 * SIDES * HF_MOST_BEHIND + 1) * (size_t)(width + HF_PAD) * (size_t)height;
 }
 
 static struct band place(const struct hf_frame *f, struct hf_rect r)
@@ -47,12 +52,17 @@ static struct band place(const struct hf_frame *f, struct hf_rect r)
     const int width = r.x1 - r.x0, height = r.y1 - r.y0;
     struct band b = {.f = f, .r = r, .reach = hf_layers_hidden_reach(l)};
     float *memory = f->work;
+    for (int v = 0; v < NARROW + 2; v++)
+        for (int u = 0; u < NARROW + 2; u++)
+            b.away[v][u] = sqrtf((float)(u * u + v * v));
     b.wide = (ptrdiff_t)wide_floats(l, width);
     b.stride = width + HF_PAD;
     const ptrdiff_t all = b.wide * (height + 2 * b.reach), plane = b.stride * height;
     b.farthest = memory + b.reach * b.wide + b.reach;
     b.across = b.farthest + all;
     memory += 2 * all;
+    b.around = memory;
+    memory += plane;
     for (int i = 0; i < SIDES * HF_MOST_BEHIND; i++, memory += 3 * plane) {
         const int k = i / SIDES, side = i % SIDES;
         b.apart[k][side] = memory;
@@ -62,10 +72,16 @@ static struct band place(const struct hf_frame *f, struct hf_rect r)
     return b;
 }
 
+// fmaxf() of numbers, without a call.
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 // What hides a sample of surface k most closely: the surface before it, or what is visible.
 static float before_of(const struct hf_known *known, int k, ptrdiff_t at, float visible)
 {
-    return k > 0 && known->behind[k - 1].weight[at] > 0 ? fmaxf(known->behind[k - 1].radius[at], visible) : visible;
+    return k > 0 && known->behind[k - 1].weight[at] > 0 ? larger(known->behind[k - 1].radius[at], visible) : visible;
 }
 
 // Samples of a quad this near to each other are of one surface.
@@ -147,6 +163,13 @@ static void grow(const struct band *b, int step, int have)
     }
 }
 
+// Keep what narrow() needs to see at once that nothing leaves a sample in view.
+static void keep_around(const struct band *b)
+{
+    for (int y = 0; y < b->r.y1 - b->r.y0; y++)
+        memcpy(b->around + y * b->stride, b->farthest + y * b->wide, sizeof(float) * (size_t)(b->r.x1 - b->r.x0));
+}
+
 // Find which samples a lens can see.
 static void find_open(struct band *b)
 {
@@ -161,7 +184,7 @@ static void find_open(struct band *b)
         for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
             look_row(b, k, y);
             for (int i = 0; i < SIDES * (b->r.x1 - b->r.x0); i++)
-                most = fmaxf(b->apart[k][i % SIDES][(y - b->r.y0) * b->stride + i / SIDES], most);
+                most = larger(b->apart[k][i % SIDES][(y - b->r.y0) * b->stride + i / SIDES], most);
         }
     }
     // Distances 0, 1, 3, 7 and so on.
@@ -169,7 +192,11 @@ static void find_open(struct band *b)
         for (int k = 0; k < count; k++)
             for (int side = 0; side < b->sides[k]; side++)
                 test(b, k, side, before, from);
-        if ((float)from >= most || from + step > b->reach)
+        const int last = (float)from >= most || from + step > b->reach;
+        // The quads of pixels up to NARROW + 1 away.
+        if (before < (NARROW + 2) / 2 && (last || from >= (NARROW + 2) / 2))
+            keep_around(b);
+        if (last)
             break;
         grow(b, step, b->reach - from);
         before = from;
@@ -200,25 +227,22 @@ static float cover(const struct seen *s, int x, float r)
     return sum;
 }
 
-// A lens that sees little past an edge needs pixels, not quads: up to NARROW pixels each one around is tested. From half
-// of that on quads begin to count.
-enum { NARROW = 8 };
-
 // Whether a pixel within `apart` pixels leaves a sample of radius r in view, 0 to 1.
-static float narrow(const struct hf_frame *f, int x, int y, float apart, float r)
+static float narrow(const struct band *b, int x, int y, float apart, float r)
 {
-    const struct hf_buf *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT], *mixed = &f->buf[HF_LAYERS_BUF_MIXED_AT];
+    const struct hf_buf *seen = &b->f->buf[HF_LAYERS_BUF_SEEN_AT], *mixed = &b->f->buf[HF_LAYERS_BUF_MIXED_AT];
     const int reach = (int)apart + 1;
     float open = 0;
-    for (int v = -reach; v <= reach && open < 1; v++)
-        for (int u = -reach; u <= reach && open < 1; u++) {
-            const float reached = hf_saturate(apart + 0.5f - sqrtf((float)(u * u + v * v)));
-            if (!(reached > open))
-                continue;
-            const float back = *hf_at(mixed, 0, x + u, y + v) > 0 ? *hf_at(mixed, 1, x + u, y + v) : -HUGE_VALF;
-            const float here = reached * (1 - hf_layers_hides(r - 1 - fmaxf(*hf_at(seen, 1, x + u, y + v), back)));
+    for (int v = -reach; v <= reach && open < 1; v++) {
+        const float *radius = hf_at(seen, 1, x, y + v), *weight = hf_at(mixed, 0, x, y + v),
+                    *behind = hf_at(mixed, 1, x, y + v), *away = b->away[v < 0 ? -v : v];
+        for (int u = -reach; u <= reach; u++) {
+            const float reached = hf_saturate(apart + 0.5f - away[u < 0 ? -u : u]);
+            const float back = weight[u] > 0 && behind[u] > radius[u] ? behind[u] : radius[u];
+            const float here = reached * (1 - hf_layers_hides(r - 1 - back));
             open = here > open ? here : open;
         }
+    }
     return open;
 }
 
@@ -268,7 +292,8 @@ static void take_known(const struct band *b, int k, const struct seen *seen, int
         float view = in_view(b, k, row + i / 2, r);
         if (apart < NARROW) {
             const float part = hf_saturate(2 - apart * (2.0f / NARROW));
-            view = view + part * (narrow(f, x0 + i, y, apart > 0 ? apart : 0, r) - view);
+            const int none = hf_layers_hides(r - 1 - b->around[row + i / 2]) >= 1;
+            view = view + part * ((none ? 0 : narrow(b, x0 + i, y, apart > 0 ? apart : 0, r)) - view);
         }
         out[4][i] = (all < most ? all : most) * view;
         out[5][i] = r;
