@@ -18,9 +18,10 @@ enum { NEAREST, FARTHEST, SIDES };
 // of that on quads begin to count.
 enum { NARROW = 8 };
 
-// A band of quads. away: the distance of a pixel so many columns and rows away. farthest: the largest visible radius within a distance that grows from level to level. Of each
-// surface and quad, for either side: how far a lens sees past what hides it, in quads; the least radius that leaves it in
-// view; and whether some does, 0 to 1. around: the largest visible radius of all pixels that narrow() looks at. sides: 1 where no quad of the band has two.
+// A band of quads. away: the distance of a pixel so many columns and rows away. farthest: the largest visible radius within
+// a distance that grows from level to level. around: that of all pixels that narrow() looks at. Of each surface and quad,
+// for either side: how far a lens sees past what hides it, in quads; the least radius that leaves it in view; and whether
+// some does, 0 to 1. sides: 1 where no quad of the band has two.
 struct band {
     const struct hf_frame *f;
     struct hf_rect r;
