@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scatter: lists of sources on vectors. Nothing is fused: the drawn shares are the same everywhere.
+#include <string.h>
+
 #include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
 #include "simd/simd.h"
@@ -32,27 +34,34 @@ static void source_pictures_simd(const float *radius, const float *weight, float
     }
 }
 
-// The bin that all lanes of four adjacent sources fall into; -1: they need several.
-HF_INLINE int source_bin(const struct hf_source_row *row, int i, const struct hf_bins *bins)
+// Four floats and four whole numbers as vectors of the compiler, which can compare and mask them on every target.
+typedef float source_4f __attribute__((vector_size(16)));
+typedef int32_t source_4i __attribute__((vector_size(16)));
+
+// The bins of four adjacent sources: of each channel by its own brightness, -1 where it is 0 or there is no source; of the
+// weights (3) that of the brightest channel, the first for black. Also the first and the last bin that any falls into.
+HF_INLINE void source_bins(const struct hf_source_row *row, int i, const struct hf_bins *bins, source_4i bin[4],
+                           int *first, int *last)
 {
-    float least = __builtin_inff(), most = 0;
-    int black = 0, b = 0;
-    if (bins->count == 1)
-        return 0;
-    for (int k = 0; k < 4; k++) {
-        float own = 0;
-        for (int c = 0; c < 3 && row->picture[i + k] >= 0; c++) {
-            const float v = __builtin_fabsf(row->colour[c][i + k]);
-            least = v > 0 && v < least ? v : least;
-            own = v > own ? v : own;
-        }
-        most = own > most ? own : most;
-        black |= own == 0 && row->picture[i + k] >= 0;
+    const source_4i none = {HF_BINS, HF_BINS, HF_BINS, HF_BINS};
+    source_4i is, brightest = none, darkest = {0, 0, 0, 0};
+    memcpy(&is, row->picture + i, sizeof is);
+    is = is >= 0;
+    for (int c = 0; c < 3; c++) {
+        source_4i n = {0, 0, 0, 0};
+        const source_4f v = (source_4f)((source_4i)v4_load(row->colour[c] + i) & 0x7fffffff);
+        for (int b = 0; b < bins->count - 1; b++)
+            n -= v < bins->least[b];
+        const source_4i some = is & (v > 0), less = some & (n < brightest), more = some & (n > darkest);
+        bin[c] = (n & some) | ~some;
+        brightest = (n & less) | (brightest & ~less);
+        darkest = (n & more) | (darkest & ~more);
     }
-    while (b < bins->count - 1 && !(least >= bins->least[b]))
-        b++;
-    // A black source puts its weight into the first bin.
-    return (b == 0 || most < bins->least[b - 1]) && (!black || b == 0) ? b : -1;
+    brightest &= brightest < HF_BINS;  // black
+    bin[3] = (brightest & is) | ~is;
+    brightest = (brightest & is) | (none & ~is);
+    *first = hf_min(hf_min(brightest[0], brightest[1]), hf_min(brightest[2], brightest[3]));
+    *last = hf_max(hf_max(darkest[0], darkest[1]), hf_max(darkest[2], darkest[3]));
 }
 
 HF_INLINE v4 source_share(v4 v, v4 part)
@@ -61,21 +70,21 @@ HF_INLINE v4 source_share(v4 v, v4 part)
     return v4_sub(t, v4_sub(t, s));
 }
 
-// The shares of four sources side by side: colours are transposed to lanes.
-HF_INLINE void source_shares(const struct hf_source_row *row, int i, const float *inverse, const double scale[4],
-                             vl share[4])
+// What bin b holds of four sources side by side: colours are transposed to lanes.
+HF_INLINE void source_shares(const struct hf_source_row *row, int i, v4 parts, const source_4i bin[4], int b,
+                             const double scale[4], vl share[4])
 {
-    float part[4];
-    for (int k = 0; k < 4; k++)
-        part[k] = inverse[hf_max(row->picture[i + k], 0)];
-    const v4 parts = v4_load(part);
-    v4 v[4] = {source_share(v4_load(row->colour[0] + i), parts), source_share(v4_load(row->colour[1] + i), parts),
-               source_share(v4_load(row->colour[2] + i), parts), source_share(v4_load(row->weight + i), parts)};
+    v4 v[4];
+    for (int c = 0; c < 4; c++)
+        v[c] =
+            (v4)((source_4i)source_share(v4_load((c < 3 ? row->colour[c] : row->weight) + i), parts) & (bin[c] == b));
     v4_transpose(v);
     for (int k = 0; k < 4; k++)
         share[k] = vl_from(v[k], scale);
 }
 
+// Where four sources fall into several bins, each of these lists all four, with zeros for what is elsewhere: so they are drawn
+// together, as four of one bin are.
 static void list_row_simd(struct hf_splats lists[HF_BINS], const struct hf_source_row *row, int from, int to,
                           const float *inverse, const struct hf_bins *bins)
 {
@@ -83,26 +92,32 @@ static void list_row_simd(struct hf_splats lists[HF_BINS], const struct hf_sourc
     const int whole = from + (to - from) / 4 * 4;
     for (int i = from; i < whole; i += 4) {
         const int32_t *p = row->picture + i;
+        source_4i bin[4];
         vl share[4];
+        float part[4];
+        int first, last;
         if ((p[0] & p[1] & p[2] & p[3]) < 0)
             continue;
-        const int b = source_bin(row, i, bins);
-        if (b < 0) {
-            hf_list_row_c(lists, row, i, i + 4, inverse, bins);
-            continue;
-        }
-        struct hf_splats *list = &lists[b];
-        int n = list->count;
-        source_shares(row, i, inverse, bins->scale[b], share);
-        for (int k = 0; k < 4; k++) {
-            if (p[k] < 0)
+        for (int k = 0; k < 4; k++)
+            part[k] = inverse[hf_max(p[k], 0)];
+        source_bins(row, i, bins, bin, &first, &last);
+        for (int b = first; b <= last; b++) {
+            const source_4i any = (bin[0] == b) | (bin[1] == b) | (bin[2] == b) | (bin[3] == b);
+            if (!(any[0] | any[1] | any[2] | any[3]))
                 continue;
-            list->x[n] = row->x + i + k;
-            list->y[n] = row->y;
-            list->picture[n] = p[k];
-            vl_store(list->share[n++], share[k]);
+            struct hf_splats *list = &lists[b];
+            int n = list->count;
+            source_shares(row, i, v4_load(part), bin, b, bins->scale[b], share);
+            for (int k = 0; k < 4; k++) {
+                if (p[k] < 0)
+                    continue;
+                list->x[n] = row->x + i + k;
+                list->y[n] = row->y;
+                list->picture[n] = p[k];
+                vl_store(list->share[n++], share[k]);
+            }
+            list->count = n;
         }
-        list->count = n;
     }
     hf_list_row_c(lists, row, whole, to, inverse, bins);
 }
