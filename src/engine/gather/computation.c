@@ -226,9 +226,11 @@ static float free_part(float cover, float see)
 static void finish_levels(const struct hf_frame *f, int x, int y, const struct sums *near, const struct sums *behind)
 {
     const int karis = hf_fields(f->s)->karis;
-    const float m = hidden(f, x, y), cover = *hf_at(near->weight[1], near->channel[1], x, y);
+    const float cover = *hf_at(near->weight[1], near->channel[1], x, y);
     const float see = *hf_at(behind->weight[1], behind->channel[1], x, y), most = cover > 1 ? cover : 1;
     const float part = free_part(cover, see), all = cover + part * see;
+    // A blur so small that its weights are 0 hides nothing.
+    const float m = all > 0 ? hidden(f, x, y) : 0;
     for (int c = 0; c < f->s->channels; c++) {
         float *v = hf_at(near->colour, c, x, y);
         const float own = weighed(*v, *hf_at(near->weight[0], near->channel[0], x, y), cover, karis);

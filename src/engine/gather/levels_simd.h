@@ -324,7 +324,7 @@ static void area_finish_row(const struct hf_frame *f, int x0, int n, int y)
         const vf m = area_hidden(l, blur + x), cover = vf_load(near.weight[1] + x);
         const vf see = vf_load(behind.weight[1] + x), most = vf_max(cover, one);
         const vf part = area_free_part(cover, see), all = vf_fma(part, see, cover);
-        const vm hides = vf_gt(m, vf_zero());
+        const vm hides = vm_and(vf_gt(m, vf_zero()), vf_gt(all, vf_zero()));
         for (int c = 0; c < f->s->channels; c++) {
             const vf own = area_weighed(vf_load(near.colour[c] + x), near.weight[0] + x, cover, karis);
             const vf back = area_weighed(vf_load(behind.colour[c] + x), behind.weight[0] + x, see, karis);
