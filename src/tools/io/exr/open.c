@@ -196,6 +196,16 @@ static bool right_type(const char *name, const char *type, int64_t size, unsigne
     return true;
 }
 
+// Count the channels that a list names, up to its end or to where it breaks off.
+static int count_channels(struct cursor *c, uint64_t end)
+{
+    char name[256];
+    int n = 0;
+    for (; c->at < end && next_name(c, name) > 0; n++)
+        c->at += 16;
+    return n;
+}
+
 // Scan one part's attributes, including the zero byte behind them.
 static int scan_part(struct cursor *c, struct hf_exr_part *part)
 {
@@ -212,6 +222,9 @@ static int scan_part(struct cursor *c, struct hf_exr_part *part)
             return -1;
         const uint64_t at = c->at;
         const int last = part->storage == EXR_STORAGE_SCANLINE ? EXR_LINEORDER_DECREASING_Y : EXR_LINEORDER_RANDOM_Y;
+        // Core reads a list up to its end, whatever size is given; others go on behind that size.
+        if (!strcmp(name, "channels") && (count_channels(c, at + (uint64_t)size) < 1 || c->at != at + (uint64_t)size))
+            return -1;
         if (!strcmp(name, "compression"))
             part->compression_at = at;
         if (!strcmp(name, "dataWindow"))
@@ -251,16 +264,6 @@ static int scan_header(struct hf_exr *e, struct hf_io_error *err)
                               e->path, (unsigned long long)e->size, (unsigned long long)at);
     }
     return 0;
-}
-
-// Count the channels that a list names, up to its end or to where it breaks off.
-static int count_channels(struct cursor *c, uint64_t end)
-{
-    char name[256];
-    int n = 0;
-    for (; c->at < end && next_name(c, name) > 0; n++)
-        c->at += 16;
-    return n;
 }
 
 // Sorting channels and looking for layers compares each channel with all others, in Core too. So a file with too many
