@@ -165,8 +165,8 @@ static int render_guessed(struct picture *to, const struct hf_layer *layers, int
     return status;
 }
 
-// One picture guesses beside the bar and at the frame's border; with the wall known the border is left, and nothing where all
-// is sharp.
+// One picture guesses beside the bar and at the frame's border; with the wall known the border is left, and nothing
+// where all is sharp.
 static void test_guessed(void)
 {
     const struct hf_layer two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)},
@@ -219,9 +219,10 @@ static void test_hidden(void)
     CHECK_MSG(green(&out[0]) > 0.5f, "peels: only %g of what the bar hides", green(&out[0]));
 }
 
-// Behind the bar a part of the wall opens on something farther, which no lens sees past the bar. What a lens sees of the wall
-// beside that part, in the same 2 x 2 pixels, must not go with it: the wall is in focus there, so the opening changes nothing
-// outside of itself but for 64 roundings of sums in the slices and what a mean of 2 x 2 pixels takes along, below 2 %.
+// Behind the bar a part of the wall opens on something farther, which no lens sees past the bar. What a lens sees of
+// the wall beside that part, in the same 2 x 2 pixels, must not go with it: the wall is in focus there, so the
+// opening changes nothing outside of itself but for 64 roundings of sums in the slices and what a mean of 2 x 2
+// pixels takes along, below 2 %.
 static void test_opening(void)
 {
     const struct hf_layer two[] = {layer_of(&whole, HF_LAYER_WHOLE), layer_of(&peel, HF_LAYER_PEEL)};
