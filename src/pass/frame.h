@@ -199,6 +199,12 @@ static inline char *hf_narrow_at(const struct hf_buf *b, int c, int x, int y, in
     return (char *)hf_at(b, c, 0, y) + (ptrdiff_t)x * bytes;
 }
 
+// fmaxf() of numbers, without a call.
+static inline float hf_larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 // 0..1; NaN becomes 0.
 static inline float hf_saturate(float v)
 {

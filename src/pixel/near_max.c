@@ -4,11 +4,6 @@
 // reaches them.
 #include "pixel/fields.h"
 
-static float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_fields *g = hf_fields(f->s);
@@ -16,9 +11,9 @@ void hf_max_x_c(const struct hf_frame *f, struct hf_rect r)
     for (int y = r.y0; y < r.y1; y++) {
         const float *in = hf_at(&f->buf[HF_BUF_COC4], g->near_coc, 0, y);
         for (int x = r.x0; x < r.x1; x++) {
-            float v = g->edge_x * larger(in[x - m], in[x + m]);
+            float v = g->edge_x * hf_larger(in[x - m], in[x + m]);
             for (int i = x - m + 1; i < x + m; i++)
-                v = larger(in[i], v);
+                v = hf_larger(in[i], v);
             hf_narrow_store(f->s->storage, hf_narrow_at(&f->buf[HF_BUF_MAX_X], 0, x, y, bytes), v);
         }
     }
@@ -33,7 +28,7 @@ void hf_max_y_c(const struct hf_frame *f, struct hf_rect r)
             float most = 0;
             for (int i = y - m; i <= y + m; i++) {
                 const float v = hf_narrow_load(f->s->storage, hf_narrow_at(&f->buf[HF_BUF_MAX_X], 0, x, i, bytes));
-                most = larger(i == y - m || i == y + m ? g->edge_y * v : v, most);
+                most = hf_larger(i == y - m || i == y + m ? g->edge_y * v : v, most);
             }
             hf_narrow_store(f->s->storage, hf_narrow_at(&f->buf[HF_BUF_MAX], 0, x, y, bytes), most);
         }

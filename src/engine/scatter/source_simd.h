@@ -38,8 +38,9 @@ static void source_pictures_simd(const float *radius, const float *weight, float
 typedef float source_4f __attribute__((vector_size(16)));
 typedef int32_t source_4i __attribute__((vector_size(16)));
 
-// The bins of four adjacent sources: of each channel by its own brightness, -1 where it is 0 or there is no source; of the
-// weights (3) that of the brightest channel, the first for black. Also the first and the last bin that any falls into.
+// The bins of four adjacent sources: of each channel by its own brightness, -1 where it is 0 or there is no source;
+// of the weights (3) that of the brightest channel, the first for black. Also the first and the last bin that any
+// falls into.
 HF_INLINE void source_bins(const struct hf_source_row *row, int i, const struct hf_bins *bins, source_4i bin[4],
                            int *first, int *last)
 {
@@ -83,8 +84,8 @@ HF_INLINE void source_shares(const struct hf_source_row *row, int i, v4 parts, c
         share[k] = vl_from(v[k], scale);
 }
 
-// Where four sources fall into several bins, each of these lists all four, with zeros for what is elsewhere: so they are drawn
-// together, as four of one bin are.
+// Where four sources fall into several bins, each of these lists all four, with zeros for what is elsewhere: so they
+// are drawn together, as four of one bin are.
 static void list_row_simd(struct hf_splats lists[HF_BINS], const struct hf_source_row *row, int from, int to,
                           const float *inverse, const struct hf_bins *bins)
 {

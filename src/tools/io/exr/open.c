@@ -222,7 +222,8 @@ static int scan_part(struct cursor *c, struct hf_exr_part *part)
             return -1;
         const uint64_t at = c->at;
         const int last = part->storage == EXR_STORAGE_SCANLINE ? EXR_LINEORDER_DECREASING_Y : EXR_LINEORDER_RANDOM_Y;
-        // Core reads a list up to its end, whatever size is given; others go on behind that size.
+        // Core reads the channel list up to its terminating zero, whatever size the attribute gives. Other readers
+        // trust the size, so the two must agree.
         if (!strcmp(name, "channels") && (count_channels(c, at + (uint64_t)size) < 1 || c->at != at + (uint64_t)size))
             return -1;
         if (!strcmp(name, "compression"))
