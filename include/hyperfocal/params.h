@@ -261,7 +261,9 @@ enum hf_layers_quality {
     HF_LAYERS_STANDARD,
     HF_LAYERS_DRAFT,  // few slices; nothing is filled in behind objects, so near objects keep hard rims
     HF_LAYERS_HIGH,   // finer slices
-    HF_LAYERS_BEST,   // the finest slices
+    // As HIGH, and edges and patterns go on behind objects. Where near and far cross, each point of the lens is followed
+    // by itself, so that a near edge cuts the discs behind it.
+    HF_LAYERS_BEST,
 };
 
 // Of layers.
@@ -287,7 +289,11 @@ struct hf_layers_params {
     // Guessed is what objects hide, where no further picture shows it, and what lies beyond the frame. Needs
     // highlight.gain 1. Default 0
     int guessed;
-    uint32_t reserved[7];
+    // Points of the lens that are followed one by one where near and far cross, so that a near edge cuts the discs
+    // behind it: 2 to 192; 1: none, only slices. 0 (default): 96 with BEST, else none. More are for large radii; time
+    // grows with them.
+    int views;
+    uint32_t reserved[6];
 };
 
 // How a frame is run, apart from what it looks like.

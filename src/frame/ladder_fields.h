@@ -12,7 +12,8 @@
     DO(chapter.rings) DO(chapter.fill) DO(chapter.downsample) DO(chapter.division) \
     DO(hexagon.resolution) DO(scatter.resolution) DO(gaussian.resolution) DO(gaussian.iterations) DO(gaussian.sigma) \
     DO(layers.quality) DO(layers.spacing) DO(layers.half_from) DO(layers.quarter_from) \
-    DO(layers.no_unmix) DO(layers.no_hidden) DO(layers.no_highlights) DO(layers.no_patterns)
+    DO(layers.no_unmix) DO(layers.no_hidden) DO(layers.no_highlights) DO(layers.no_patterns) \
+    DO(layers.views)
 // clang-format on
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the page of made-up measurements, for page.py to look at in a browser: every engine, long names, points on top
 // of each other, values that are missing. Usage: page_made_up FILE.html [FILE.png], the latter being the chart alone.
+#include "peels.h"
 #include "metrics.h"
 #include "page.h"
 #include "tools/common/report.h"
@@ -64,6 +65,12 @@ int main(int argc, char **argv)
     static struct trade_setting settings[SETTINGS];
     static struct trade_run run;
     static const struct bench_args args = {.quick = 1};
+    static const struct bench_peels peels = {
+        .count = 1,
+        .scenes = {
+            {"fence",
+             3,
+             {{33.75, 0.02, 52.2, 90.3, 0}, {44.65, 0.006, 80.8, 150.3, 65.2}, {45.22, 0.005, 104.7, 167.2, 49.3}}}}};
     struct tool_error error = {""};
     struct trade t = {.args = &args,
                       .threads = 2,
@@ -74,7 +81,8 @@ int main(int argc, char **argv)
                       .result = results,
                       .cpu = "A CPU & its <name>",
                       .date = "2000-01-01",
-                      .commit = "none"};
+                      .commit = "none",
+                      .peels = {&peels, &peels}};
     if (argc < 2)
         return 1;
     run.t = &t;

@@ -322,7 +322,8 @@ enum {
     LAYERS_LIGHT,
     LAYERS_UP,
     LAYERS_BLEND,
-    LAYERS_FINISH
+    LAYERS_FINISH,
+    LAYERS_VIEWS
 };
 void layers_make(struct world *w, int which);
 void layers_call(struct world *w, const struct kernels *k, enum arena a, int which);

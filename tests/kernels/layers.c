@@ -290,6 +290,9 @@ void layers_make(struct world *w, int which)
     case LAYERS_WEIGH:
         weigh_make(w);
         return;
+    case LAYERS_VIEWS:
+        views_make(w);
+        return;
     case LAYERS_DISC:
         disc_make(w);
         return;
@@ -424,6 +427,9 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         return;
     case LAYERS_WEIGH:
         weigh_call(w, k, a);
+        return;
+    case LAYERS_VIEWS:
+        views_call(w, k, a);
         return;
     case LAYERS_BLEND:
         blend_call(w, k, a);

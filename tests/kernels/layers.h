@@ -6,8 +6,9 @@
 #include "harness.h"
 #include "engine/layers/hidden.h"
 #include "engine/layers/patterns.h"
+#include "engine/layers/views.h"
 
-enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, DISC_ROWS = 13 };
+enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, DISC_ROWS = 13, PLANES = 3, VIEWS = 9 };
 
 struct layers_case {
     int which, channels, rows, add, with, whole, taps;
@@ -19,6 +20,8 @@ struct layers_case {
     int from, to;
     struct hf_pattern_place place;
     struct hf_pattern_tap around[MOST];
+    int16_t shift[PLANES][VIEWS][2];
+    float point[VIEWS][2];
 };
 extern struct layers_case now;
 
@@ -93,6 +96,8 @@ static inline void set_of(const struct world *w, enum arena a, int i, float *set
 // layers_slices.c
 void weigh_make(struct world *w);
 void weigh_call(const struct world *w, const struct kernels *k, enum arena a);
+void views_make(struct world *w);
+void views_call(const struct world *w, const struct kernels *k, enum arena a);
 void disc_make(struct world *w);
 void runs_make(struct world *w);
 void alike_make(struct world *w);

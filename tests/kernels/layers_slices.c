@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels of layers that weigh and draw slices, and the one that compares patterns.
+// The kernels of layers that weigh and draw slices, those of views, and the one that compares patterns.
 #include "layers.h"
 
 void weigh_make(struct world *w)
@@ -39,6 +39,64 @@ void weigh_call(const struct world *w, const struct kernels *k, enum arena a)
     set_of(w, a, IN, out);
     k->layers.weigh(&now.slice, in, now.with ? line(w, a, 48) : NULL, stride(w), now.rows, now.channels, w->n, now.add,
                     out, slot_start(w, a, SLOT_WORK));
+}
+
+// Planes of two rows: weight, colours, light. Views see either row of them, displaced by up to 16 pixels.
+enum { PLANE_LINES = 16, EYE = 48, LIGHT = IN + 11 };
+
+void views_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    w->colours = COLOURS_PLAIN;  // samples are finite, as layers clamps them
+    w->n = 16 * rng_int(r, 1, 2);
+    for (int i = 0; i < PLANES; i++)
+        for (int y = 0; y < 2; y++)
+            for (int c = 0; c <= now.channels + 1; c++)
+                fill(w, PLANE_LINES * i + 8 * y + c, -16, w->n + 16, c ? COLOUR : WEIGHT);
+    for (int v = 0; v < VIEWS; v++)
+        for (int k = 0; k < 2; k++) {
+            now.point[v][k] = rng_float(r, -1, 1);
+            for (int i = 0; i < PLANES; i++)
+                now.shift[i][v][k] = (int16_t)(k ? rng_int(r, 0, 1) : rng_int(r, -16, 16));
+        }
+    for (int x = 0; x < w->n; x++)
+        line(w, ARENA_MADE, EYE)[x] = rng_float(r, -1, 1);
+    for (int i = 0; i < 2; i++)
+        fill(w, LIGHT + i, 0, w->n, WEIGHT);
+    for (int i = 0; i < 13; i++)
+        if (i < 10 ? i % 5 < now.channels || i % 5 == 4 : i == 10 ? now.with : now.add)
+            put(w, IN + i, w->n, 0);
+}
+
+void views_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    struct hf_view_plane plane[PLANES];
+    const struct hf_view_eye eye = {.x = line(w, a, EYE),
+                                    .y = now.off,
+                                    .sharp = 3,
+                                    .point = (const float(*)[2])now.point,
+                                    .total = line(w, a, IN + 10)};
+    struct hf_view_row row = {.plane = plane,
+                              .planes = PLANES,
+                              .far = now.rows % (PLANES + 1),
+                              .views = VIEWS,
+                              .channels = now.channels,
+                              .lit = now.add,
+                              .n = w->n,
+                              .eye = now.with ? &eye : NULL};
+    for (int i = 0; i < PLANES; i++)
+        plane[i] = (struct hf_view_plane){.at = line(w, a, PLANE_LINES * i),
+                                          .row = 8 * stride(w),
+                                          .channel = stride(w),
+                                          .level = i == 1,
+                                          .shift = (const int16_t(*)[2])now.shift[i],
+                                          .light = now.add && i == 1 ? line(w, a, LIGHT) : NULL,
+                                          .seen = line(w, a, LIGHT + 1)};
+    for (int i = 0; i < 5; i++) {
+        row.near[i] = line(w, a, IN + i);
+        row.beyond[i] = line(w, a, IN + 5 + i);
+    }
+    k->layers.views(&row);
 }
 
 // Rows of any lengths that decrease from the middle outwards.

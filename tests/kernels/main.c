@@ -142,6 +142,7 @@ const struct test tests[] = {
     ROW("layers_up", LAYERS_UP, 600, layers_make, layers_call, layers_check),
     ROW("layers_blend", LAYERS_BLEND, 600, layers_make, layers_call, layers_check),
     ROW("layers_finish", LAYERS_FINISH, 600, layers_make, layers_call, layers_check),
+    ROW("layers_views", LAYERS_VIEWS, 600, layers_make, layers_call, layers_check),
 };
 const int test_count = sizeof tests / sizeof *tests;
 

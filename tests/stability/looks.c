@@ -12,7 +12,7 @@ struct look_row {
     enum hf_fill fill;
     struct hf_aperture_params aperture;
     float sigma;
-    int picture;
+    int picture, views;
 };
 
 #define PLAIN .squeeze = 1
@@ -41,6 +41,7 @@ static const struct look_row table[] = {
     {"layers", HF_ENGINE_LAYERS, BOTH, HF_LAYERS_STANDARD, .aperture = {PLAIN}},
     {"layers high", HF_ENGINE_LAYERS, BOTH, HF_LAYERS_HIGH, .aperture = {PLAIN}},
     {"layers best", HF_ENGINE_LAYERS, 0, HF_LAYERS_BEST, .aperture = {PLAIN}},
+    {"layers views", HF_ENGINE_LAYERS, 0, .views = 96, .aperture = {PLAIN}},
     {"layers ngon", HF_ENGINE_LAYERS, 0, .aperture = {PLAIN, .blades = 6, .roundness = 0.3f}},
     {"layers ring", HF_ENGINE_LAYERS, BOTH, .aperture = {PLAIN, .ring = 0.45f}},
     {"layers cat's eye", HF_ENGINE_LAYERS, BOTH, .aperture = {PLAIN, .cat_eye = 0.6f}},
@@ -77,6 +78,7 @@ struct subject look_make(int index)
     p->layers.quality = l->quality;
     p->hexagon.resolution = p->scatter.resolution = p->gaussian.resolution = l->resolution;
     p->chapter.fill = l->fill;
+    p->layers.views = l->views;
     p->aperture = l->aperture;
     p->gaussian.sigma = l->sigma > 0 ? l->sigma : HF_DERIVE;
     if (l->picture)

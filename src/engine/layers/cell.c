@@ -3,60 +3,66 @@
 #include <string.h>
 
 #include "engine/layers/parts.h"
+#include "engine/layers/views.h"
 
-// Scratch. With memory NULL it only counts how much would be taken.
-struct scratch {
-    float *memory;
-    size_t used;
-};
-
-static float *take(struct scratch *m, size_t n, ptrdiff_t at)
+float *hf_layers_take(struct hf_scratch *m, size_t n, ptrdiff_t at)
 {
     float *p = m->memory ? m->memory + m->used + at : NULL;
     m->used += (n + 15) & ~(size_t)15;
     return p;
 }
 
-static struct hf_window take_window(struct scratch *m, int width, int height, int channels)
+static struct hf_window take_window(struct hf_scratch *m, int width, int height, int channels)
 {
     struct hf_window w = {.channel = LEFT + width + RIGHT};
     w.row = w.channel * channels;
-    w.at = take(m, (size_t)w.row * (size_t)(height + 2 * MARGIN), MARGIN * w.row + LEFT);
+    w.at = hf_layers_take(m, (size_t)w.row * (size_t)(height + 2 * MARGIN), MARGIN * w.row + LEFT);
     return w;
 }
 
-static struct hf_tile_map take_map(struct scratch *m, int columns, int rows, int around)
+static struct hf_tile_map take_map(struct hf_scratch *m, int columns, int rows, int around)
 {
     struct hf_tile_map map = {.stride = columns + 2 * around};
     const size_t n = (size_t)map.stride * (size_t)(rows + 2 * around);
-    uint8_t *start = (uint8_t *)take(m, (n + sizeof(float) - 1) / sizeof(float), 0);
+    uint8_t *start = (uint8_t *)hf_layers_take(m, (n + sizeof(float) - 1) / sizeof(float), 0);
     map.at = start ? start + around * map.stride + around : NULL;
     return map;
+}
+
+void hf_layers_place_sources(struct hf_cell *c, struct hf_scratch *m)
+{
+    const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels, n = c->l->most_tiles;
+    const int wide = width + 2 * n * TILE + 2 * AROUND;
+    const size_t words = (size_t)(4 * c->l->words + c->l->share_words);
+    c->present = (uint64_t *)hf_layers_take(m, 2 * words * (size_t)(c->rows + 2 * n), 0);
+    c->used = take_map(m, c->columns, c->rows, n);
+    c->plain = take_map(m, c->columns, c->rows, n);
+    c->filled = take_map(m, c->columns, TILE / 2, n);
+    c->touched = take_map(m, c->columns, c->rows, 1);
+    c->source.channel = wide;
+    c->source.row = (ptrdiff_t)wide * (channels + 1);
+    c->source.at = hf_layers_take(m, (size_t)c->source.row * TILE, n * TILE + AROUND);
+    for (int i = 0; i < (c->l->set.highlights ? c->l->parts : 0); i++) {
+        c->shine[i].shone = take_map(m, c->columns, c->rows, 1);
+        c->shine[i].sum = take_window(m, width, height, 3);
+    }
+    c->any = (uint8_t *)hf_layers_take(m, (size_t)wide / 16 / sizeof(float) + 1, 0);
+    for (int i = 0; i < 6; i++)
+        c->line[i] = hf_layers_take(m, (size_t)wide, 0);
+    c->shape = hf_layers_take(m, hf_layers_shape_floats(c->l, c->columns, c->rows), 0);
 }
 
 // Place a cell's scratch in memory; returns how many floats it takes.
 static size_t place(struct hf_cell *c, float *memory)
 {
-    struct scratch m = {.memory = memory};
-    const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels, n = c->l->most_tiles;
-    const int wide = width + 2 * n * TILE + 2 * AROUND;
-    c->present = (uint64_t *)take(&m, 2 * (size_t)(4 * c->l->words + c->l->share_words) * (size_t)(c->rows + 2 * n), 0);
-    c->used = take_map(&m, c->columns, c->rows, n);
-    c->plain = take_map(&m, c->columns, c->rows, n);
-    c->filled = take_map(&m, c->columns, TILE / 2, n);
-    struct hf_tile_map *const maps[] = {&c->touched, &c->near,   &c->far,    &c->middle,
-                                        &c->begun,   &c->lit[0], &c->lit[1], &c->covered};
-    for (int i = 0; i < 8; i++)
+    struct hf_scratch m = {.memory = memory};
+    const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels;
+    hf_layers_place_sources(c, &m);
+    struct hf_tile_map *const maps[] = {&c->near, &c->far, &c->middle, &c->begun, &c->lit[0], &c->lit[1], &c->covered};
+    for (int i = 0; i < 7; i++)
         *maps[i] = take_map(&m, c->columns, c->rows, 1);
-    c->source.channel = wide;
-    c->source.row = (ptrdiff_t)wide * (channels + 1);
-    c->source.at = take(&m, (size_t)c->source.row * TILE, n * TILE + AROUND);
     for (int i = 0; i <= HF_LAYERS_COARSEST; i++)
         c->sum[i] = take_window(&m, width >> i, height >> i, channels + 1);
-    for (int i = 0; i < (c->l->set.highlights ? c->l->parts : 0); i++) {
-        c->shine[i].shone = take_map(&m, c->columns, c->rows, 1);
-        c->shine[i].sum = take_window(&m, width, height, 3);
-    }
     for (int i = 0; i < 3; i++)
         c->stack[i] = take_window(&m, i == MIDDLE ? width : width / 2, i == MIDDLE ? height : height / 2,
                                   channels + (i == MIDDLE ? 4 : 3));
@@ -66,20 +72,16 @@ static size_t place(struct hf_cell *c, float *memory)
     c->part = part.at;
     c->part_row = part.row;
     c->lift = take_window(&m, width / 2, height / 2, 1).at;
-    c->none = take(&m, (size_t)width + AROUND, 0);
-    c->any = (uint8_t *)take(&m, (size_t)wide / 16 / sizeof(float) + 1, 0);
-    for (int i = 0; i < 6; i++)
-        c->line[i] = take(&m, (size_t)wide, 0);
+    c->none = hf_layers_take(&m, (size_t)width + AROUND, 0);
     for (int i = 0; i < 5; i++)
-        c->row[i] = take(&m, (size_t)width + AROUND, 0);
-    c->shape = take(&m, hf_layers_shape_floats(c->l, c->columns, c->rows), 0);
+        c->row[i] = hf_layers_take(&m, (size_t)width + AROUND, 0);
     return m.used;
 }
 
 size_t hf_layers_cell_floats(const struct hf_layers *l, int width, int height)
 {
     struct hf_cell c = {.l = l, .columns = width / TILE, .rows = height / TILE};
-    return place(&c, NULL);
+    return place(&c, NULL) + hf_layers_views_floats(l);
 }
 
 void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples, const struct hf_layers_kernels *k,
@@ -92,7 +94,7 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
                         .y0 = r.y0,
                         .columns = (r.x1 - r.x0) / TILE,
                         .rows = (r.y1 - r.y0) / TILE};
-    place(&c, memory);
+    float *views = memory + place(&c, memory);
     hf_layers_find_present(&c);
     hf_layers_mark_plain(&c);
     memset(c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
@@ -115,4 +117,6 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     }
     if (!hf_stopped(l->stop))
         hf_layers_finish_cell(&c, out, stride);
+    if (l->set.views && l->levels)
+        hf_layers_put_views(&c, views, out, stride);
 }

@@ -265,3 +265,21 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
     }
     clear_row(c, b, held.y0, held.y1);
 }
+
+void hf_layers_take_sources(const struct hf_cell *c, const struct hf_build *b, hf_layers_taker *take, void *to)
+{
+    const int size = TILE >> b->s->level;
+    const struct around high = around_of(c->y0, c->l->rows);
+    for (int ty = c->box.y0; ty < c->box.y1 && !hf_stopped(c->l->stop); ty++) {
+        int tx = c->box.x0;
+        if (hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0) == tx)
+            continue;
+        build_row(c, b, ty, within(ty, high), 0, size);
+        for (int y = 0; y < size; y++) {
+            tx = c->box.x0;
+            for (int end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->box.x1, ~0)) > tx; tx = end)
+                take(to, source_at(c, 0, tx * size, y), c->source.channel, tx * size, ty * size + y, (end - tx) * size);
+        }
+        clear_row(c, b, 0, size);
+    }
+}

@@ -16,6 +16,7 @@
 #include "engine/layers/patterns.h"
 #include "engine/layers/slices.h"
 #include "engine/layers/unmix.h"
+#include "engine/layers/views.h"
 #include "pass/check.h"
 #include "pixel/limits.h"
 #include "pixel/edges.h"
@@ -70,13 +71,14 @@ static const struct hf_layers_settings qualities[] = {
         {.spacing = 2, .fine = 1, .unmix = 1, .hidden = 1, .highlights = 1, .held = 0.25f, .half = 6, .quarter = 32},
     [HF_LAYERS_HIGH] =
         {.spacing = 2.5f, .fine = 2, .unmix = 1, .hidden = 1, .highlights = 1, .held = 0.25f, .half = 6, .quarter = 32},
-    [HF_LAYERS_BEST] = {.spacing = 1.5f,
+    [HF_LAYERS_BEST] = {.spacing = 2.5f,
                         .fine = 2,
                         .unmix = 1,
                         .hidden = 1,
                         .highlights = 1,
                         .patterns = 1,
                         .held = 0.75f,
+                        .views = 96,
                         .half = 5,
                         .quarter = 32},
 };
@@ -100,6 +102,9 @@ static int check(struct hf_settings *r, const struct hf_params *asked, const str
         all->max_radius = hf_most_picture_radius(all);
         r->limit = HF_LIMIT_PICTURE;
     }
+    if (hf_check_value("layers.views", p->views, 0, HF_LAYERS_MOST_VIEWS, message))
+        return HF_ERR_ARG;
+    p->views = p->views ? p->views : hf_max(set->views, 1);
     p->spacing = p->spacing == HF_DERIVE ? set->spacing : p->spacing;
     p->half_from = p->half_from == HF_DERIVE ? set->half : p->half_from;
     p->quarter_from = p->quarter_from == HF_DERIVE ? fmaxf(set->quarter, p->half_from) : p->quarter_from;
@@ -125,6 +130,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->hidden &= !given->no_hidden;
     set->highlights &= !given->no_highlights && !given->guessed;
     set->patterns &= !given->no_patterns;
+    set->views = given->views > 1 ? given->views : 0;
     set->held = !set->hidden ? 0 : set->patterns ? set->held : fminf(set->held, qualities[HF_LAYERS_STANDARD].held);
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;
@@ -174,7 +180,8 @@ static void place_tiles(struct hf_layers *l)
     const size_t n = (size_t)l->columns * (size_t)l->rows;
     l->seen_range = l->tiles.data;
     l->mixed_range = l->seen_range + n;
-    l->repaired = (atomic_uchar *)(l->mixed_range + n);
+    l->crossing = (struct hf_layers_crossing *)(l->mixed_range + n);
+    l->repaired = (atomic_uchar *)(l->crossing + n);
     l->transparent = l->repaired + 1;
 }
 
@@ -192,7 +199,8 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
         return HF_ERR_CANCELLED;
     const size_t tiles = (size_t)l->columns * (size_t)l->rows;
     l->parts = l->shaped ? 1 : HF_LAYERS_PARTS;
-    int err = hf_block_grow(&l->tiles, tiles * 2 * sizeof(struct hf_layers_range) + 2, mem);
+    int err = hf_block_grow(&l->tiles,
+                            tiles * (2 * sizeof(struct hf_layers_range) + sizeof(struct hf_layers_crossing)) + 2, mem);
     if (!err)
         err = hf_block_grow(&l->tables, hf_layers_slice_bytes(l, s->max_radius), mem);
     if (!err)
@@ -206,6 +214,8 @@ static void release(void *own, const struct hf_mem *mem)
     hf_block_free(&l->tables, mem);
     hf_block_free(&l->tiles, mem);
     hf_block_free(&l->marks, mem);
+    hf_block_free(&l->views, mem);
+    hf_block_free(&l->lens.block, mem);
     for (int i = 0; i < 6; i++)
         hf_block_free(&l->shapes[i / 3][i % 3].block, mem);
 }
@@ -213,7 +223,7 @@ static void release(void *own, const struct hf_mem *mem)
 static size_t held(const void *own)
 {
     const struct hf_layers *l = own;
-    size_t bytes = l->tables.size + l->tiles.size + l->marks.size;
+    size_t bytes = l->tables.size + l->tiles.size + l->marks.size + l->views.size + l->lens.block.size;
     for (int i = 0; i < 6; i++)
         bytes += l->shapes[i / 3][i % 3].block.size;
     return bytes;
@@ -240,6 +250,10 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && hf_layers_level_from(l->levels) < range * 1.001f;)
             l->levels++;
     l->known = l->given && l->levels;
+    const int lens =
+        l->levels && l->set.views ? hf_layers_make_views(l, s->resolved->params.aperture.picture, mem) : HF_OK;
+    if (lens)
+        return lens;
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
     atomic_init(l->repaired, 0);
     atomic_init(l->transparent, 0);
@@ -380,7 +394,7 @@ static int cost(const struct hf_setup *s, int numbers[HF_COST_NUMBERS], int *rea
 {
     const struct hf_layers *l = hf_layers(s);
     numbers[0] = (int)(8 * l->set.spacing) + l->set.fine;
-    numbers[1] = l->set.unmix + 2 * l->set.hidden + 4 * l->set.highlights + 8 * l->set.patterns;
+    numbers[1] = l->set.unmix + 2 * l->set.hidden + 4 * l->set.highlights + 8 * l->set.patterns + 16 * l->set.views;
     numbers[2] = (int)fminf(l->set.half, 4096);
     numbers[3] = l->groups + 4 * (l->key.picture ? 3 : l->key.cat_eye > 0 ? 2 : l->shaped);
     *reach = (int)fmaxf(l->farthest, -l->nearest);
@@ -420,6 +434,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .up = hf_layers_up_c,
         .blend = hf_layers_blend_c,
         .finish = hf_layers_finish_c,
+        .views = hf_layers_views_c,
     };
 }
 

@@ -81,6 +81,9 @@ typedef void hf_layers_weights(const float *weight, int count, const float *in, 
 typedef void hf_layers_stamp(const float *weight, int n, float v, float *out);
 // Upsample: 2n numbers from n of two rows, three quarters of a and one quarter of b. Reads one more at either end.
 typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
+// A row of pixels seen from many points of the lens.
+struct hf_view_row;
+typedef void hf_layers_views(const struct hf_view_row *row);
 // Put sums of a slice (weight at 4) under what a stack holds; part, if not NULL, receives the visible share of them.
 // HIDING: visible samples that hide others; hidden samples keep all they may cover. SEEN: visible samples behind those;
 // they reduce what hidden samples may cover. HELD: as SEEN, but as much coverage as to->held says is withheld, and
@@ -123,6 +126,7 @@ struct hf_layers_kernels {
     hf_layers_blend *blend;
     hf_layers_light *light;
     hf_layers_finish *finish;
+    hf_layers_views *views;
 };
 HF_DECLARE_KERNELS(hf_layers_kernels);
 
@@ -207,6 +211,7 @@ hf_layers_up hf_layers_up_c;
 hf_layers_blend hf_layers_blend_c;
 hf_layers_light hf_layers_light_c;
 hf_layers_finish hf_layers_finish_c;
+hf_layers_views hf_layers_views_c;
 
 extern const struct hf_engine_def hf_layers_engine;
 

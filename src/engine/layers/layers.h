@@ -51,6 +51,11 @@ struct hf_layers_range {
     float low, high;
 };
 
+// How much of a tile hides something, 0 to 1, and the largest radius of what hides or is hidden: how far that shows.
+struct hf_layers_crossing {
+    float much, reach;
+};
+
 // A row of a disc: weight 1 up to n pixels from its middle, f at n + 1. n may be -1.
 struct hf_disc_row {
     int n;
@@ -82,6 +87,7 @@ struct hf_layers_settings {
     // it. This share of near coverage is withheld from visible far samples and kept for hidden ones. Better guesses
     // deserve a larger one.
     float held;
+    int views;  // from how many points of the lens the picture is made where near and far cross, see views.h; 0: none
     float half, quarter, eighth;  // a slice of at least this radius has this resolution
 };
 
@@ -102,7 +108,12 @@ struct hf_layers {
     int around;                    // a cell reads samples up to this many pixels away
     const struct hf_known *given;  // known surfaces, or NULL
     int guessed;                   // samples have 1 for a colour that is known and 0 for a guess
-    int known;                     // hidden samples have full resolution, as surfaces are known
+    struct hf_shapes lens;         // the shape of an aperture that is not a disc, to place points in
+    struct hf_block views;         // points and shifts
+    float (*point[3])[2];          // of each group: where views are made from, in an aperture of radius 1, not widened
+    int16_t (*shift[3])[2];        // of each group, slice and view: from a pixel to the one that it shows
+    int group_used;
+    int known;  // hidden samples have full resolution, as surfaces are known
 
     int width, height;                // of the frame
     atomic_int *stop;                 // the setup's
@@ -125,6 +136,7 @@ struct hf_layers {
 
     int columns, rows;  // of tiles
     struct hf_layers_range *seen_range, *mixed_range;
+    struct hf_layers_crossing *crossing;  // of each tile
     // The slices that have samples in a tile, one bit each: visible, mixed, hidden, second hidden samples, and shares.
     struct hf_block marks;
     atomic_uchar *repaired;     // whether samples of the colour were repaired or clamped

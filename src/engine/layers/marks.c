@@ -66,6 +66,36 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
         }
 }
 
+// The largest of a tile's weights.
+static float largest_weight(struct tile t)
+{
+    float most = 0;
+    for (int y = 0; y < t.rows; y++)
+        for (int x = 0; x < t.n; x++)
+            most = hf_larger(t.weight[y * t.stride + x], most);
+    return most;
+}
+
+static float size_of(struct hf_layers_range r)
+{
+    return r.low > r.high ? 0 : hf_larger(-r.low, r.high);
+}
+
+// That much of a tile hides something fully: below it views fade out.
+#define CROSSES 0.25f
+
+// Note how a tile's surfaces cross, for views.
+static void note_crossing(const struct hf_layers *l, struct tile hidden, struct tile beyond,
+                          const struct hf_layers_range range[2], int at)
+{
+    struct hf_layers_crossing *to = &l->crossing[at];
+    const float h = range[0].low > range[0].high ? 0 : largest_weight(hidden),
+                b = range[1].low > range[1].high ? 0 : largest_weight(beyond);
+    to->much = hf_saturate(hf_larger(h, b) * (1 / CROSSES));
+    to->reach = hf_larger(hf_larger(size_of(l->seen_range[at]), size_of(l->mixed_range[at])),
+                          hf_larger(size_of(range[0]), size_of(range[1])));
+}
+
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
@@ -78,7 +108,10 @@ void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
         for (int tx = r.x0 / size; tx * size < r.x1; tx++) {
             const int x = tx * size << fine, y = ty * size << fine, mark = (ty * l->columns + tx) * l->words;
             const int n = hf_min(size << fine, width - x), rows = hf_min(size << fine, height - y);
-            mark_tile(f, slice, tile_of(hidden, 0, x, y, n, rows), &l->hidden_marks[mark]);
-            mark_tile(f, slice, tile_of(beyond, 0, x, y, n, rows), &l->beyond_marks[mark]);
+            const struct tile h = tile_of(hidden, 0, x, y, n, rows), b = tile_of(beyond, 0, x, y, n, rows);
+            const struct hf_layers_range range[2] = {mark_tile(f, slice, h, &l->hidden_marks[mark]),
+                                                     mark_tile(f, slice, b, &l->beyond_marks[mark])};
+            if (l->set.views)
+                note_crossing(l, h, b, range, ty * l->columns + tx);
         }
 }

@@ -30,6 +30,9 @@ enum { WHOLE = 1, DULL = 2 };
 // resolution.
 enum hf_kind { HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES };
 
+// Channels of light. Alpha has none: it goes with the coverage, or opaque surfaces would not stay opaque.
+enum { LIT = 3 };
+
 // The sets of samples for which each tile marks its slices.
 enum hf_marks { HF_MARKS_SEEN, HF_MARKS_MIXED, HF_MARKS_HIDDEN, HF_MARKS_BEYOND, HF_MARKS_SHARES };
 
@@ -132,12 +135,27 @@ void hf_layers_align_span(int *x0, int *x1);
 // The next span of columns that runs of tiles cover. Returns 0 if there is none.
 int hf_layers_next_span(const struct hf_cell *c, const struct hf_tile_map *m, int level, int ty, struct hf_span *s);
 
+// cell.c
+// Scratch. With memory NULL it only counts how much would be taken.
+struct hf_scratch {
+    float *memory;
+    size_t used;
+};
+
+float *hf_layers_take(struct hf_scratch *m, size_t n, ptrdiff_t at);
+// Place what a cell's sources and highlights take.
+void hf_layers_place_sources(struct hf_cell *c, struct hf_scratch *m);
+
 // draw.c
 // Pointers to a set's planes at a pixel.
 void hf_layers_planes_at(const struct hf_layers *l, const struct hf_layers_set *set, const float *weight, int x, int y,
                          const float *in[6]);
 void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
                           const struct hf_window *to);
+// Hand a slice's sources to `take`, run by run: n pixels of the slice's resolution from (x, y) on, a channel every so many
+// floats.
+typedef void hf_layers_taker(void *to, const float *in, ptrdiff_t channel, int x, int y, int n);
+void hf_layers_take_sources(const struct hf_cell *c, const struct hf_build *b, hf_layers_taker *take, void *to);
 
 // shape_draw.c
 // Floats of scratch for a cell of that many tiles.
@@ -149,12 +167,21 @@ void hf_layers_draw_shape(const struct hf_cell *c, const struct hf_build *b, con
                           const struct hf_window *to);
 
 // together.c
+// Call `put` for each radius of shares that belong to a slice, drawn in `shine`, with the part of them that belongs to it.
+typedef void hf_layers_putter(struct hf_cell *c, const struct hf_shine *shine, int slice, float amount);
+void hf_layers_each_light(struct hf_cell *c, int slice, hf_layers_putter *put);
 void hf_layers_put_slice(struct hf_cell *c, int i);
 // Call before the first slice of the far stack: the part of shared samples that the middle stack holds closes the far
 // one.
 void hf_layers_cover(struct hf_cell *c);
 // The near stack goes into the middle stack, in front of all else.
 void hf_layers_begin_middle(const struct hf_cell *c);
+// views.c
+// Replace the result of a cell, out, by views where near and far cross.
+void hf_layers_put_views(const struct hf_cell *c, float *memory, float *const out[4], ptrdiff_t stride);
+
+// Whether a tile has only sharp pixels and nothing else reaches it.
+int hf_layers_is_sharp(const struct hf_cell *c, int tx, int ty);
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride);
 
 #endif

@@ -9,6 +9,7 @@
 #include "engine/layers/patterns_simd.h"
 #include "engine/layers/runs_simd.h"
 #include "engine/layers/unmix_simd.h"
+#include "engine/layers/views_simd.h"
 
 void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
 {
@@ -38,4 +39,5 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->up = layers_up_simd;
     k->blend = layers_blend_simd;
     k->finish = layers_finish_simd;
+    k->views = layers_views_simd;
 }

@@ -272,6 +272,13 @@ void hf_layers_use_group(struct hf_layers *l, int group)
     l->behind = l->slice + l->slices;
     l->shine = l->behind + l->slices;
     l->cover = l->slice + (2 + l->parts) * l->slices;
+    l->group_used = group;
+}
+
+double hf_layers_slice_radius(const struct hf_layers *l, int group, int i)
+{
+    const float r = l->group[group][i].radius;
+    return (double)r * (1 + (double)shift_of(l, group, r));
 }
 
 int hf_layers_tiles_around(const struct hf_slice *s)

@@ -75,9 +75,6 @@ static void fill_tile(const struct hf_window *w, int channel, int tx, int y, flo
 
 #define LEAST_OPEN (1.0f / 16)
 
-// Channels of light. Alpha has none: it goes with the coverage, or opaque surfaces would not stay opaque.
-enum { LIT = 3 };
-
 // Clear the light of tiles that have none yet.
 static void begin_light(const struct hf_cell *c, int stack, const struct hf_tile_map *shone)
 {
@@ -159,8 +156,9 @@ static void draw_light(struct hf_cell *c, int number, struct hf_shine *shine)
 }
 
 // Add shares of one radius to a stack's light where their slice is visible.
-static void put_light(struct hf_cell *c, int stack, const struct hf_shine *shine, float amount)
+static void put_light(struct hf_cell *c, const struct hf_shine *shine, int slice, float amount)
 {
+    const int stack = c->l->slice[slice].radius < 0 ? NEAR : FAR;
     const struct hf_window *to = &c->light[stack];
     begin_light(c, stack, &shine->shone);
     for (int ty = 0; ty < c->rows && !hf_stopped(c->l->stop); ty++)
@@ -177,8 +175,7 @@ static void put_light(struct hf_cell *c, int stack, const struct hf_shine *shine
             }
 }
 
-// Add all shares that belong to a slice: those with radii between its neighbours.
-static void put_lights(struct hf_cell *c, int stack, int slice)
+void hf_layers_each_light(struct hf_cell *c, int slice, hf_layers_putter *put)
 {
     const struct hf_layers *l = c->l;
     const int before = slice > 0 ? l->slice[slice - 1].shine : -1, own = l->slice[slice].shine,
@@ -187,7 +184,7 @@ static void put_lights(struct hf_cell *c, int stack, int slice)
         struct hf_shine *shine = &c->shine[i - (i < own ? before : own)];
         draw_light(c, i, shine);
         if (shine->any)
-            put_light(c, stack, shine, part_of(&l->slice[slice], l->shine[i].radius));
+            put(c, shine, slice, part_of(&l->slice[slice], l->shine[i].radius));
     }
 }
 
@@ -233,7 +230,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
         if (s->radius != 0)
             mark(c, &c->touched, reached);
         if (shares)
-            put_lights(c, stack, i);
+            hf_layers_each_light(c, i, put_light);
     }
     // Next to the focus, the border between visible and hidden samples must be as fine as the picture; at quads'
     // resolution a line would stay open.
@@ -321,8 +318,7 @@ void hf_layers_cover(struct hf_cell *c)
     lift(c, 0);
 }
 
-// Whether a tile has only sharp pixels and nothing else reaches it.
-static int is_sharp(const struct hf_cell *c, int tx, int ty)
+int hf_layers_is_sharp(const struct hf_cell *c, int tx, int ty)
 {
     const struct hf_layers_range r = hf_layers_range_at(c, c->l->seen_range, tx, ty),
                                  m = hf_layers_range_at(c, c->l->mixed_range, tx, ty);
@@ -420,6 +416,6 @@ void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff
         }
     for (int ty = 0; ty < c->rows; ty++)
         for (int tx = 0; tx < c->columns; tx++)
-            if (is_sharp(c, tx, ty))
+            if (hf_layers_is_sharp(c, tx, ty))
                 copy_tile(c, tx, ty, out, stride);
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Views: the picture from single points of the lens. Slices know how much of the lens a near surface covers, but not
+// which part. From one point of the lens each slice is only displaced, by its radius times the point, so what hides
+// what is exact. The mean over many points is the lens. Views are made where near and far cross, which is where samples
+// are hidden; elsewhere slices show the same.
+#ifndef HF_LAYERS_VIEWS_H
+#define HF_LAYERS_VIEWS_H
+
+#include "engine/layers/layers.h"
+#include "pass/frame.h"
+
+enum {
+    HF_LAYERS_VIEWS_COLUMNS = 8,  // tiles of a block, for which views are made at once
+    HF_LAYERS_VIEWS_ROWS = 4,
+    HF_LAYERS_VIEWS_SUM = 16,  // views that are summed up before they are added to the others: so rounding stays small
+    HF_LAYERS_MOST_VIEWS = 192
+};
+
+// Views would lie too far apart for larger radii, and their planes would be large.
+#define HF_LAYERS_VIEWS_MOST 128.0f
+
+// A slice as views read it: planes of what it holds. x has full resolution, y that of `level`.
+struct hf_view_plane {
+    // The weight at the block's pixel (0, 0), over the number of views; colours and light follow, `channel` floats apart.
+    const float *at;
+    ptrdiff_t row, channel;  // in floats
+    int level;
+    const int16_t (*shift)[2];  // of each view: from a pixel to the one that it shows
+    // Sums over the views of the light of highlights, and of what of it is seen. NULL: there are none.
+    float *light, *seen;
+};
+
+// What a cat's eye leaves of the lens, seen from a row of pixels: of each view's point what lies within the circle of
+// radius 1 around (x[i], y). The circle's edge is as soft as points lie apart.
+struct hf_view_eye {
+    const float *x;
+    float y, sharp;  // sharp: 1 / the width of the edge
+    const float (*point)[2];
+    float *total;  // receives the mean over the views of what is left
+};
+
+// Pixels (x, y) to (x + n, y) of a block, and the slices that reach them, nearest first; from `far` on they lie behind the
+// focus. n is 16 or 32. near, beyond: sums over the views of colours, and of weights (4), of slices before and from `far`.
+struct hf_view_row {
+    const struct hf_view_plane *plane;
+    int planes, far, views, channels, lit, x, y, n;  // lit: some plane has light
+    float one;                                       // 1 / views
+    const struct hf_view_eye *eye;                   // or NULL
+    float *near[5], *beyond[5];
+};
+
+// Make the points of the lens, and where slices lie seen from them. May return HF_ERR_MEMORY or HF_ERR_CANCELLED.
+int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem);
+// Floats of scratch that a block takes.
+size_t hf_layers_views_floats(const struct hf_layers *l);
+
+#endif
