@@ -4,6 +4,7 @@
 #include "jpeg.h"
 #include "others.h"
 #include "page_chart.h"
+#include "peels.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -178,6 +179,27 @@ static void taps_table(FILE *out, const struct trade *t)
         fputs("</tbody></table></div>\n", out);
 }
 
+// What a second and a third surface of each pixel are worth.
+static void surfaces(FILE *out, const struct trade *t)
+{
+    if (!t->peels[0])
+        return;
+    fputs("<h2>Surfaces known</h2>\n<p>layers, with one picture and with the surfaces behind it "
+          "(<code>--peel</code>).</p>\n"
+          "<div class=\"scroll\"><table><thead><tr><th>scene</th><th>surfaces</th><th>standard, dB</th><th>ms</th>"
+          "<th>best, dB</th><th>ms</th></tr></thead><tbody>\n",
+          out);
+    for (int s = 0; s < t->peels[0]->count; s++)
+        for (int k = 0; k < t->peels[0]->scenes[s].known; k++) {
+            fprintf(out, "<tr><td>%s</td><td>%d</td>", k ? "" : t->peels[0]->scenes[s].name, k + 1);
+            for (int i = 0; i < TRADE_PEELS && t->peels[i]; i++)
+                fprintf(out, "<td>%.2f</td><td>%.1f</td>", t->peels[i]->scenes[s].at[k].psnr,
+                        t->peels[i]->scenes[s].at[k].ms);
+            fputs("</tr>\n", out);
+        }
+    fputs("</tbody></table></div>\n", out);
+}
+
 static void others(FILE *out, const struct trade *t)
 {
     int n = 0;
@@ -245,6 +267,7 @@ static int write_page(FILE *out, struct trade_run *run, struct tool_error *error
     charts(out, t);
     table(out, t);
     taps_table(out, t);
+    surfaces(out, t);
     others(out, t);
     fputs("</main>\n<script type=\"application/json\" id=\"numbers\">", out);
     trade_json(out, t);

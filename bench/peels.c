@@ -146,7 +146,7 @@ int bench_peels_measure(struct bench_peels *t, const struct bench_args *args, st
         free(entries[i]);
     }
     free(entries);
-    return err || found ? err : tool_fail(error, -1, "there is no NAME%s in the folder %s", ending, args->images);
+    return err;
 }
 
 static void table(FILE *out, const void *what)
@@ -194,5 +194,9 @@ static void json(FILE *out, const void *what)
 int bench_peels(const struct bench_args *args, struct tool_error *error)
 {
     struct bench_peels t;
-    return bench_peels_measure(&t, args, error) ? -1 : bench_write_report(args, table, json, &t, error);
+    if (bench_peels_measure(&t, args, error))
+        return -1;
+    if (!t.count)
+        return tool_fail(error, -1, "there is no NAME%s in the folder %s", ending, args->images);
+    return bench_write_report(args, table, json, &t, error);
 }

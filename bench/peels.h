@@ -23,8 +23,8 @@ struct bench_peels {
     struct bench_peel_scene scenes[PEEL_SCENES];
 };
 
-// All scenes in args->images that have NAME.exr, NAME.truth.exr and NAME.peel1.exr, by the engine layers. Returns 0, or -1 with
-// *error filled.
+// All scenes in args->images that have NAME.exr, NAME.truth.exr and NAME.peel1.exr, by the engine layers; there may be
+// none. Returns 0, or -1 with *error filled.
 int bench_peels_measure(struct bench_peels *t, const struct bench_args *args, struct tool_error *error);
 // `hyperfocal-bench truth --peels`.
 int bench_peels(const struct bench_args *args, struct tool_error *error);

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "machine.h"
 #include "page.h"
+#include "peels.h"
 #include "subject.h"
 #include "tools/common/machine.h"
 #include "tradeoff.h"
@@ -145,6 +146,22 @@ static int readme(const struct trade *t, struct tool_error *error)
     return trade_readme(a->readme, t, command, error);
 }
 
+// With one, two and three surfaces known, for the page: the standard quality and the best.
+static int measure_peels(struct trade *t, struct bench_peels peels[TRADE_PEELS], struct tool_error *error)
+{
+    static const enum hf_layers_quality qualities[TRADE_PEELS] = {HF_LAYERS_STANDARD, HF_LAYERS_BEST};
+    static struct bench_args args[TRADE_PEELS];
+    for (int i = 0; i < TRADE_PEELS && t->args->html; i++) {
+        args[i] = *t->args;
+        args[i].params.engine = HF_ENGINE_LAYERS;
+        args[i].params.layers.quality = qualities[i];
+        if (bench_peels_measure(&peels[i], &args[i], error))
+            return -1;
+        t->peels[i] = peels[i].count ? &peels[i] : NULL;
+    }
+    return 0;
+}
+
 static int report(struct trade_run *run, struct tool_error *error)
 {
     const struct trade *t = run->t;
@@ -168,6 +185,7 @@ int bench_tradeoff(struct bench_args *args, struct tool_error *error)
     struct trade_setting own;
     struct trade_run run = {0};
     struct trade_cache *cache = NULL;
+    static struct bench_peels peels[TRADE_PEELS];
     tool_cpu(t.cpu, sizeof t.cpu);
     bench_machine_date(t.date, sizeof t.date);
     t.commit = bench_machine_commit();
@@ -192,6 +210,8 @@ int bench_tradeoff(struct bench_args *args, struct tool_error *error)
     }
     if (!err)
         err = measure_times(&run, cache, error);
+    if (!err)
+        err = measure_peels(&t, peels, error);
     if (!err) {
         trade_rank(&t);
         trade_ladder(&t);

@@ -79,6 +79,9 @@ struct trade_result {
     int step;  // position on the ladder, from 1; 0: not on it
 };
 
+struct bench_peels;
+enum { TRADE_PEELS = 2 };
+
 struct trade_scene_name {
     char text[64];
 };
@@ -95,6 +98,8 @@ struct trade {
     double gflops;
     char cpu[128], date[32];
     const char *commit;
+    // Scenes with one, two and three surfaces known, by layers in two qualities; NULL: not measured.
+    const struct bench_peels *peels[TRADE_PEELS];
 };
 
 // The median and quartiles of samples.

@@ -62,7 +62,8 @@ static struct picture in_double(const struct input *in, struct hf_params p)
         out = scatter_reference(&in->colour, in->radius.plane[0]);
     } else if (p.engine == HF_ENGINE_LAYERS) {
         struct hf_params filled = {.size = sizeof filled};
-        if (hf_resolve(WIDTH, HEIGHT, &in->depth, &p, &filled, NULL, NULL) == HF_OK)
+        // The reference has slices alone.
+        if (hf_resolve(WIDTH, HEIGHT, &in->depth, &p, &filled, NULL, NULL) == HF_OK && filled.layers.views == 1)
             out = layers_reference(&in->colour, in->radius.plane[0], &filled);
     }
     return out;
