@@ -113,8 +113,8 @@ void trade_rank(struct trade *t);
 double trade_gain_db(const struct trade_result *better, const struct trade_result *than);
 // What a step of the ladder gains at least over the one before: a difference that a user can see.
 static const double TRADE_STEP_DB = 0.2;
-// Fill in step: the longest list of settings from the cheapest to the most accurate, in which each is slower than the
-// one before, gains TRADE_STEP_DB, and is not worse on any scene. A setting is never chosen for a scene with radii beyond
+// Fill in step: the longest list of settings from the cheapest to the most accurate, in which each is slower by a fifth
+// than the one before, gains TRADE_STEP_DB, and is not worse on any scene. A setting is never chosen for a scene with radii beyond
 // its reach (hf_choose_quality), so there a setting with more reach may be worse. The part of the list that reaches any
 // radius begins with the cheapest engine with its defaults. Only settings that blur and use the machine's own threads
 // and instruction set are listed; among settings that do the same thing, the one with the fewest words.
@@ -122,7 +122,7 @@ void trade_ladder(struct trade *t);
 // The results in the order of the table: by time.
 void trade_order(const struct trade *t, int order[]);
 
-// The steps of the ladder for --quality: the cheapest that reaches any radius; the cheapest within 1 dB of the last;
+// The steps of the ladder for --quality: the cheapest that reaches any radius; the cheapest within 1.5 dB of the last;
 // the cheapest within 0.25 dB; the last. Where no step lies between two qualities, both are the same step. place receives
 // indices of results. Returns 0, or -1 if there is no ladder.
 enum { TRADE_QUALITIES = 4 };

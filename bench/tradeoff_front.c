@@ -93,8 +93,11 @@ static double error_on(const struct trade_result *r, int scene)
     return r->at[scene].distance[BENCH_WHOLE].display_rmse;
 }
 
-// Whether a setting may be the next step: it takes longer, gains TRADE_STEP_DB overall, and loses at most 0.1 dB on any
-// scene.
+// What takes less than this times another's milliseconds is nearly as fast.
+static const double SLOWER = 1.2;
+
+// Whether a setting may be the next step: it takes a fifth longer, gains TRADE_STEP_DB overall, and loses at most 0.1 dB
+// on any scene. What is nearly as fast stands in the place of what errs more.
 static int may_follow(const struct trade *t, const struct trade_result *better, const struct trade_result *than)
 {
     static const double same = 1.0116;  // 0.1 dB
@@ -103,7 +106,7 @@ static int may_follow(const struct trade *t, const struct trade_result *better, 
         if (choosable && error_on(better, s) > same * error_on(than, s))
             return 0;
     }
-    return trade_gain_db(better, than) >= TRADE_STEP_DB && better->ms.median > than->ms.median;
+    return trade_gain_db(better, than) >= TRADE_STEP_DB && better->ms.median > SLOWER * than->ms.median;
 }
 
 // Whether another setting with fewer words errs equally and takes equally long, as far as can be told.
@@ -186,16 +189,23 @@ static void find_ways(struct ways *w, int limited)
     }
 }
 
-// The cheapest setting that has a path; as many steps lie above it as TRADE_STEP_DB leaves room for. plain: only engines
-// with their defaults.
+// The cheapest setting that has a path, or the one among those nearly as cheap with as long a path that errs least; as many
+// steps lie above it as TRADE_STEP_DB leaves room for. plain: only the cheapest of engines with their defaults.
 static int cheapest(const struct ways *w, int plain)
 {
+    int first = -1, best = -1;
     for (int k = 0; k < w->t->results; k++) {
         const int i = w->order[k];
-        if (w->length[i] > 0 && (!plain || is_plain(&w->t->result[i])))
-            return i;
+        const struct trade_result *r = &w->t->result[i];
+        if (w->length[i] <= 0 || (plain && (!is_plain(r) || first >= 0)))
+            continue;
+        if (first < 0)
+            first = best = i;
+        else if (r->ms.median <= SLOWER * w->t->result[first].ms.median && w->length[i] == w->length[first] &&
+                 r->error < w->t->result[best].error)
+            best = i;
     }
-    return -1;
+    return best;
 }
 
 void trade_ladder(struct trade *t)
@@ -225,7 +235,7 @@ void trade_ladder(struct trade *t)
 int trade_qualities(const struct trade *t, int place[TRADE_QUALITIES])
 {
     int order[TRADE_SETTINGS], last = -1;
-    static const double within_db[TRADE_QUALITIES] = {INFINITY, 1, 0, 0};
+    static const double within_db[TRADE_QUALITIES] = {INFINITY, 1.5, 0, 0};
     trade_order(t, order);
     for (int i = 0; i < t->results; i++)
         if (t->result[i].step > 0 && (last < 0 || t->result[i].step > t->result[last].step))

@@ -434,7 +434,7 @@ void trade_ladder_table(FILE *out, const struct trade *t)
         "// SPDX-License-Identifier: BSD-3-Clause\n"
         "// Made by `hyperfocal-bench tradeoff --ladder src/frame/ladder_table.h`. Do not edit.\n"
         "//\n"
-        "// Settings worth having, cheapest first. Each takes longer than the one before and errs less by 0.2 dB or "
+        "// Settings worth having, cheapest first. Each takes a fifth longer than the one before and errs less by 0.2 dB or "
         "more on\n"
         "// average; on no scene where both may be chosen does it err by 0.1 dB more. Those of the gaussian engine are "
         "for blur\n"

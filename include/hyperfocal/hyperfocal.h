@@ -323,7 +323,7 @@ HF_API int hf_resolve(int width, int height, const struct hf_depth *depth, const
 // either can be chosen.
 enum hf_quality {
     HF_QUALITY_DRAFT,     // the cheapest that blurs as far as any lens: the gather
-    HF_QUALITY_STANDARD,  // the cheapest within 1 dB of the best; also for moving pictures
+    HF_QUALITY_STANDARD,  // the cheapest within 1.5 dB of the best; also for moving pictures
     HF_QUALITY_HIGH,      // an old name of the best
     HF_QUALITY_BEST,      // the most accurate
 };

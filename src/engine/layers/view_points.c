@@ -137,6 +137,11 @@ int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, co
     const int err = make_points(l, picture, mem);
     if (err)
         return err;
+    l->lens_reach = 1;
+    for (int g = 0; g < l->groups; g++)
+        for (int v = 0; v < l->set.views; v++)
+            l->lens_reach =
+                fmax(fmax(fabs((double)l->point[g][v][0]) * l->wide, fabs((double)l->point[g][v][1])), l->lens_reach);
     for (int g = 0; g < l->groups; g++)
         for (int i = 0; i < l->slices; i++) {
             const double r = hf_layers_slice_radius(l, g, i);

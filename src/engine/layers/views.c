@@ -49,9 +49,10 @@ struct block {
     float *line;      // for softening light
 };
 
+// How far light of radius 1 goes.
 static double wide_of(const struct hf_layers *l)
 {
-    return fmax((double)l->wide, 1) * (1 + fabs((double)l->chromatic));
+    return l->lens_reach * (1 + fabs((double)l->chromatic));
 }
 
 // Views of large radii lie far apart, so their slices need no more than this: log2 of the pixel size.
@@ -74,7 +75,7 @@ static size_t shape_plane(const struct hf_layers *l, int slice, struct plane *p)
 
 static int is_in(const struct hf_layers *l, int slice)
 {
-    return fabsf(l->slice[slice].radius) <= HF_LAYERS_VIEWS_MOST;
+    return fabs((double)l->slice[slice].radius) * wide_of(l) <= (double)HF_LAYERS_VIEWS_MOST;
 }
 
 static size_t place(struct block *b, float *memory)
@@ -94,8 +95,7 @@ static size_t place(struct block *b, float *memory)
     for (int i = 0; i < 3; i++)
         b->shone[i] = hf_layers_take(&m, PIXELS, 0);
     b->total = hf_layers_take(&m, PIXELS, 0);
-    b->line =
-        hf_layers_take(&m, 2 * (WIDTH + 2 * ((size_t)HF_LAYERS_VIEWS_MOST * (size_t)ceil(wide_of(l)) + 2 * TILE)), 0);
+    b->line = hf_layers_take(&m, 2 * (WIDTH + 2 * ((size_t)HF_LAYERS_VIEWS_MOST + 2 * TILE)), 0);
     b->memory = hf_layers_take(&m, 0, 0);
     for (int i = 0; i < l->slices; i++) {
         struct plane p;
@@ -122,16 +122,15 @@ static int apart(int a, int b)
 // from radii too large for them.
 static float blend_at(const struct hf_layers *l, int column, int row)
 {
-    const float most = hf_larger(-l->nearest, l->farthest);
+    const float most = hf_larger(-l->nearest, l->farthest) * (float)wide_of(l);
     const int n = (int)fminf(most, 65536) / TILE + 2;
     float much = 0, small = 1;
     for (int y = hf_max(row - n, 0); y < hf_min(row + n + 1, l->rows); y++)
         for (int x = hf_max(column - n, 0); x < hf_min(column + n + 1, l->columns); x++) {
             const struct hf_layers_crossing *t = &l->crossing[y * l->columns + x];
             const float away = (float)hf_max(apart(x, column), apart(y, row));
-            const float near = hf_saturate((t->reach * (float)wide_of(l) - away) * (1.0f / TILE) + 1);
-            const float over =
-                near * hf_saturate((t->reach - 0.75f * HF_LAYERS_VIEWS_MOST) * (4 / HF_LAYERS_VIEWS_MOST));
+            const float reach = t->reach * (float)wide_of(l), near = hf_saturate((reach - away) * (1.0f / TILE) + 1);
+            const float over = near * hf_saturate((reach - 0.75f * HF_LAYERS_VIEWS_MOST) * (4 / HF_LAYERS_VIEWS_MOST));
             much = hf_larger(t->much * near, much);
             small = 1 - over < small ? 1 - over : small;
         }
