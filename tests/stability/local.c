@@ -27,7 +27,9 @@ static int reach_of(const struct hf_params *p, int radius)
         // As in subjects.c.
         return p->gaussian.sigma > 0 ? (int)(4 * p->gaussian.sigma) + 8 : 2 * 3 * (p->gaussian.resolution ? 4 : 1) + 8;
     case HF_ENGINE_LAYERS:
-        return radius + 4 + 32 + 4 + 2 + 4;  // as layers() of subjects.c, and a cell of 4 pixels
+        // As layers() of subjects.c, and a cell of 4 pixels. Where a sample begins to hide something, views count from that
+        // tile on, fade out over another, and by its corners reach into a third.
+        return radius + 4 + 32 + 4 + 2 + 4 + (p->layers.views > 1 ? 3 * 16 : 0);
     default:
         return 0;
     }

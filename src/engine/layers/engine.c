@@ -254,7 +254,9 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
         l->levels && l->set.views ? hf_layers_make_views(l, s->resolved->params.aperture.picture, mem) : HF_OK;
     if (lens)
         return lens;
+    // Views ask the tiles within reach of a cell, and one more, how they cross; so far around, all that is read is made.
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
+    memset(l->crossing, 0, sizeof *l->crossing * (size_t)l->columns * (size_t)l->rows);
     atomic_init(l->repaired, 0);
     atomic_init(l->transparent, 0);
     l->words = (l->slices + 63) / 64;
