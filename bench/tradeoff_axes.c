@@ -63,7 +63,7 @@ static struct picture in_double(const struct input *in, struct hf_params p)
     } else if (p.engine == HF_ENGINE_LAYERS) {
         struct hf_params filled = {.size = sizeof filled};
         // The reference has slices alone.
-        if (hf_resolve(WIDTH, HEIGHT, &in->depth, &p, &filled, NULL, NULL) == HF_OK && filled.layers.views == 1)
+        if (hf_resolve(WIDTH, HEIGHT, &in->depth, &p, &filled, NULL, NULL) == HF_OK && filled.layers.lens_points == 1)
             out = layers_reference(&in->colour, in->radius.plane[0], &filled);
     }
     return out;

@@ -107,9 +107,9 @@ const struct trade_setting trade_settings[] = {
     {"grid", "high, every 1, half from 4", "--engine layers --layers-quality high --spacing 1 --half-from 4", 0},
     // The most accurate settings: best looks for patterns at any spacing of slices.
     {"grid", "best, no patterns", "--engine layers --layers-quality best --no-patterns", 0},
-    {"grid", "best, slices", "--engine layers --layers-quality best --views 1", 0},
-    {"grid", "32 views", "--engine layers --views 32", 0},
-    {"grid", "best, 32 views", "--engine layers --layers-quality best --views 32", 0},
+    {"grid", "best, slices", "--engine layers --layers-quality best --lens-points 1", 0},
+    {"grid", "32 views", "--engine layers --lens-points 32", 0},
+    {"grid", "best, 32 views", "--engine layers --layers-quality best --lens-points 32", 0},
     {"grid", "best, every 4", "--engine layers --layers-quality best --spacing 4", 0},
     {"grid", "best, every 1, half from 4", "--engine layers --layers-quality best --spacing 1 --half-from 4", 0},
     {"grid", "best, all at full", "--engine layers --layers-quality best --half-from 2048", 0},

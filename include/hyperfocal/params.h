@@ -292,7 +292,7 @@ struct hf_layers_params {
     // Points of the lens that are followed one by one where near and far cross, so that a near edge cuts the discs
     // behind it: 2 to 192; 1: none, only slices. 0 (default): 96 with BEST, else none. More are for large radii; time
     // grows with them.
-    int views;
+    int lens_points;
     uint32_t reserved[6];
 };
 

@@ -13,7 +13,7 @@
     DO(hexagon.resolution) DO(scatter.resolution) DO(gaussian.resolution) DO(gaussian.iterations) DO(gaussian.sigma) \
     DO(layers.quality) DO(layers.spacing) DO(layers.half_from) DO(layers.quarter_from) \
     DO(layers.no_unmix) DO(layers.no_hidden) DO(layers.no_highlights) DO(layers.no_patterns) \
-    DO(layers.views)
+    DO(layers.lens_points)
 // clang-format on
 
 #endif

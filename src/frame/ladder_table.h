@@ -15,8 +15,8 @@
      {HF_PARAMS_DEFAULTS}}, \
     {"--engine layers", 0.023639f, 0.032431f, 42.26f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS}}, \
-    {"--engine layers --layers-quality best --views 1", 0.022740f, 0.032629f, 73.70f, \
-     {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3, .layers.views = 1}}, \
+    {"--engine layers --layers-quality best --lens-points 1", 0.022740f, 0.032629f, 73.70f, \
+     {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3, .layers.lens_points = 1}}, \
     {"--engine layers --layers-quality best", 0.020895f, 0.027630f, 227.5f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3}}
 // steps of draft, standard, high and best

@@ -90,7 +90,7 @@ static void against_double(struct hf_context *c, struct rng *rng, int n)
     p.layers.no_hidden = n % 7 == 3;
     p.layers.no_highlights = !lamps;
     p.layers.no_patterns = n % 8 == 7;
-    p.layers.views = 1;  // test-layers_rays has them
+    p.layers.lens_points = 1;  // test-layers_rays has them
     p.aperture.blades = shaped && !drawn ? 3 + rng_below(rng, 6) : 0;
     p.aperture.rotation = p.aperture.blades ? rng_range(rng, -90, 90) : 0;
     p.aperture.roundness = p.aperture.blades && n % 8 >= 4 ? rng_range(rng, 0.1f, 1) : 0;

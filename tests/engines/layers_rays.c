@@ -175,7 +175,7 @@ static void one_scene(struct hf_context *c, int planes, const struct hf_aperture
         if (planes > 1 && surfaces == planes)
             to->slices += squared;
     }
-    params.layers.views = 96;
+    params.layers.lens_points = 96;
     CHECK_INT(render(c, &params, planes), HF_OK);
     if (planes > 1)
         to->points += apart(truth);

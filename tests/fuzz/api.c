@@ -251,7 +251,7 @@ static void any_layers(struct bytes *b, struct hf_layers_params *p)
     p->no_highlights = flags >> 2 & 1;
     p->no_patterns = flags >> 3 & 1;
     p->quality = (enum hf_layers_quality)any_choice(b, 4);
-    p->views = flags >> 4 ? 0 : take_byte(b) % 194;
+    p->lens_points = flags >> 4 ? 0 : take_byte(b) % 194;
     sensible(b, &p->spacing, 32);
     sensible(b, &p->half_from, 16);
     sensible(b, &p->quarter_from, 64);

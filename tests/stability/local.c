@@ -29,7 +29,7 @@ static int reach_of(const struct hf_params *p, int radius)
     case HF_ENGINE_LAYERS:
         // As layers() of subjects.c, and a cell of 4 pixels. Where a sample begins to hide something, views count from that
         // tile on, fade out over another, and by its corners reach into a third.
-        return radius + 4 + 32 + 4 + 2 + 4 + (p->layers.views > 1 ? 3 * 16 : 0);
+        return radius + 4 + 32 + 4 + 2 + 4 + (p->layers.lens_points > 1 ? 3 * 16 : 0);
     default:
         return 0;
     }

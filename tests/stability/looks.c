@@ -78,7 +78,7 @@ struct subject look_make(int index)
     p->layers.quality = l->quality;
     p->hexagon.resolution = p->scatter.resolution = p->gaussian.resolution = l->resolution;
     p->chapter.fill = l->fill;
-    p->layers.views = l->views;
+    p->layers.lens_points = l->views;
     p->aperture = l->aperture;
     p->gaussian.sigma = l->sigma > 0 ? l->sigma : HF_DERIVE;
     if (l->picture)

@@ -102,9 +102,9 @@ static int check(struct hf_settings *r, const struct hf_params *asked, const str
         all->max_radius = hf_most_picture_radius(all);
         r->limit = HF_LIMIT_PICTURE;
     }
-    if (hf_check_value("layers.views", p->views, 0, HF_LAYERS_MOST_VIEWS, message))
+    if (hf_check_value("layers.lens_points", p->lens_points, 0, HF_LAYERS_MOST_VIEWS, message))
         return HF_ERR_ARG;
-    p->views = p->views ? p->views : hf_max(set->views, 1);
+    p->lens_points = p->lens_points ? p->lens_points : hf_max(set->views, 1);
     p->spacing = p->spacing == HF_DERIVE ? set->spacing : p->spacing;
     p->half_from = p->half_from == HF_DERIVE ? set->half : p->half_from;
     p->quarter_from = p->quarter_from == HF_DERIVE ? fmaxf(set->quarter, p->half_from) : p->quarter_from;
@@ -130,7 +130,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->hidden &= !given->no_hidden;
     set->highlights &= !given->no_highlights && !given->guessed;
     set->patterns &= !given->no_patterns;
-    set->views = given->views > 1 ? given->views : 0;
+    set->views = given->lens_points > 1 ? given->lens_points : 0;
     set->held = !set->hidden ? 0 : set->patterns ? set->held : fminf(set->held, qualities[HF_LAYERS_STANDARD].held);
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;

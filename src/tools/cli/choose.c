@@ -4,11 +4,11 @@
 #include <math.h>
 
 // Options that set what --quality and --max-error would choose; they exclude each other.
-static const char *const knobs[] = {
-    "engine",     "resolution",     "iterations",    "sigma",       "rings",    "fill",
-    "downsample", "division",       "storage",       "karis",       "faithful", "bicubic",
-    "uniform",    "half-from",      "quarter-from",  "spacing",     "no-unmix", "per-pixel-kernel",
-    "no-hidden",  "layers-quality", "no-highlights", "no-patterns", "views"};
+static const char *const knobs[] = {"engine",        "resolution",  "iterations",       "sigma",     "rings",
+                                    "fill",          "downsample",  "division",         "storage",   "karis",
+                                    "faithful",      "bicubic",     "uniform",          "half-from", "quarter-from",
+                                    "spacing",       "no-unmix",    "per-pixel-kernel", "no-hidden", "layers-quality",
+                                    "no-highlights", "no-patterns", "lens-points"};
 
 static int by_error(const struct cli_args *args)
 {

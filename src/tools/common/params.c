@@ -77,8 +77,8 @@ const struct tool_option tool_params_options[] = {
     {"no-patterns", 0, TOOL_LOOK, NULL, "Behind objects no edges and patterns go on (quality best).",
      FLAG(layers.no_patterns),
      .engines = "layers"},
-    {"views", 0, TOOL_LOOK, "N", "Points of the lens that are followed where near and far cross, 2 to 192; 1: none. Default by "
-     "--layers-quality.", COUNT(layers.views, 1, 192),
+    {"lens-points", 0, TOOL_LOOK, "N", "Points of the lens that are followed where near and far cross, 2 to 192; 1: none. Default by "
+     "--layers-quality.", COUNT(layers.lens_points, 1, 192),
      .engines = "layers"},
     {"karis", 0, TOOL_LOOK, NULL, "Weight samples by 1/(1+luminance), against fireflies.", FLAG(gather.karis), .also = {OF(chapter.karis)},
      .engines = "gather|chapter"},
