@@ -193,6 +193,7 @@ static void cells(void)
         p.engine = HF_ENGINE_LAYERS;
         p.max_radius = rng_range(&rng, 4, 12);
         p.layers.quality = rng_below(&rng, 2) ? HF_LAYERS_HIGH : HF_LAYERS_STANDARD;
+        p.layers.lens_points = rng_below(&rng, 2) ? 24 : 1;
         const enum scene_kind kind = (enum scene_kind)rng_below(&rng, SCENE_FAR);
         const int width = 40 + rng_below(&rng, 110), height = 3 + rng_below(&rng, 60);
         struct scene s = scene_new(&rng, kind, width, height, 3);

@@ -250,13 +250,15 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
         for (l->levels = 1; l->levels < HF_LAYERS_LEVELS && hf_layers_level_from(l->levels) < range * 1.001f;)
             l->levels++;
     l->known = l->given && l->levels;
-    const int lens =
-        l->levels && l->set.views ? hf_layers_make_views(l, s->resolved->params.aperture.picture, mem) : HF_OK;
-    if (lens)
-        return lens;
-    // Views ask the tiles within reach of a cell, and one more, how they cross; so far around, all that is read is made.
+    if (l->levels && l->set.views) {
+        const int lens = hf_layers_make_views(l, s->resolved->params.aperture.picture, mem);
+        if (lens)
+            return lens;
+        // A region runs only some cells, and what no pass has made hides nothing.
+        memset(l->crossing, 0, sizeof *l->crossing * (size_t)l->columns * (size_t)l->rows);
+    }
+    // Views ask the tiles within reach of a cell, and one more, how they cross.
     l->around = (l->most_tiles + 2) * HF_LAYERS_TILE;
-    memset(l->crossing, 0, sizeof *l->crossing * (size_t)l->columns * (size_t)l->rows);
     atomic_init(l->repaired, 0);
     atomic_init(l->transparent, 0);
     l->words = (l->slices + 63) / 64;

@@ -113,8 +113,8 @@ struct hf_layers {
     float (*point[3])[2];          // of each group: where views are made from, in an aperture of radius 1, not widened
     int16_t (*shift[3])[2];        // of each group, slice and view: from a pixel to the one that it shows
     double lens_reach;             // the farthest point from the middle, in radii, at least 1
-    int group_used;
-    int known;  // hidden samples have full resolution, as surfaces are known
+    int group_used;                // the group that hf_layers_use_group() chose last
+    int known;                     // hidden samples have full resolution, as surfaces are known
 
     int width, height;                // of the frame
     atomic_int *stop;                 // the setup's

@@ -142,6 +142,7 @@ struct hf_scratch {
     size_t used;
 };
 
+// The next n floats, from number `at` of them on.
 float *hf_layers_take(struct hf_scratch *m, size_t n, ptrdiff_t at);
 // Place what a cell's sources and highlights take.
 void hf_layers_place_sources(struct hf_cell *c, struct hf_scratch *m);
@@ -176,12 +177,12 @@ void hf_layers_put_slice(struct hf_cell *c, int i);
 void hf_layers_cover(struct hf_cell *c);
 // The near stack goes into the middle stack, in front of all else.
 void hf_layers_begin_middle(const struct hf_cell *c);
-// views.c
-// Replace the result of a cell, out, by views where near and far cross.
-void hf_layers_put_views(const struct hf_cell *c, float *memory, float *const out[4], ptrdiff_t stride);
-
 // Whether a tile has only sharp pixels and nothing else reaches it.
 int hf_layers_is_sharp(const struct hf_cell *c, int tx, int ty);
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride);
+
+// views.c
+// Replace the result of a cell, out, by views where near and far cross. memory: hf_layers_views_floats() floats.
+void hf_layers_put_views(const struct hf_cell *c, float *memory, float *const out[4], ptrdiff_t stride);
 
 #endif

@@ -12,9 +12,9 @@ enum { SIZE = 64, COLUMNS = 4 * SIZE + 3 };
 // 1 / the golden ratio: its multiples fill a line evenly. With v / n they are a lattice that fills a square evenly.
 #define GOLDEN 0.61803398874989485
 
-static double evenly(int v, double step)
+static double evenly(int v)
 {
-    const double at = 0.5 + v * step;
+    const double at = 0.5 + v * GOLDEN;
     return at - floor(at);
 }
 
@@ -97,7 +97,7 @@ static void place_points(const struct hf_shape *s, double wide, int n, float (*p
         double x = 0;
         point[v][1] = (float)(place_of(&rows, (v + 0.5) / n, &row) / SIZE);
         if (row >= 0)
-            row_at(s, &s->row[row], evenly(v, GOLDEN) * rows.of[row], &x);
+            row_at(s, &s->row[row], evenly(v) * rows.of[row], &x);
         point[v][0] = (float)(x / (SIZE * wide));
     }
     float was[HF_LAYERS_MOST_VIEWS];

@@ -26,7 +26,8 @@ struct hf_view_plane {
     ptrdiff_t row, channel;  // in floats
     int level;
     const int16_t (*shift)[2];  // of each view: from a pixel to the one that it shows
-    // Sums over the views of the light of highlights, and of what of it is seen. NULL: there are none.
+    // For the pixels of the row: the light of highlights and what of it is seen, added up over the views. NULL: there is
+    // none.
     float *light, *seen;
 };
 
@@ -40,7 +41,8 @@ struct hf_view_eye {
 };
 
 // Pixels (x, y) to (x + n, y) of a block, and the slices that reach them, nearest first; from `far` on they lie behind the
-// focus. n is 16 or 32. near, beyond: sums over the views of colours, and of weights (4), of slices before and from `far`.
+// focus. n is 16 or 32. near, beyond: means over the views of colours times weights, and of weights (4), of slices before and
+// from `far` on.
 struct hf_view_row {
     const struct hf_view_plane *plane;
     int planes, far, views, channels, lit, x, y, n;  // lit: some plane has light
