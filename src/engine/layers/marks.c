@@ -81,7 +81,7 @@ static float size_of(struct hf_layers_range r)
     return r.low > r.high ? 0 : hf_larger(-r.low, r.high);
 }
 
-// That much of a tile hides something fully: below it views fade out.
+// A tile with a hidden sample of this weight counts fully as one where surfaces cross; with less, views fade out.
 #define CROSSES 0.25f
 
 // Note how a tile's surfaces cross, for views.

@@ -19,10 +19,11 @@ enum {
 };
 _Static_assert(COLUMNS *ROWS <= 32, "a bit for each tile");
 
-// What some views leave open is filled with what others see behind the focus, if at least this part of them does; with
-// fewer the rest is filled with all that is seen. Slices have the same rule (HF_LAYERS_FAINT), but there less is open.
-// Measured with two surfaces known and 192 views: with a half 43.2 dB on `fence` and 36.3 on `foliage`, with a tenth 46.2
-// and 36.7, with a fiftieth 46.5 and 37.0, but then one surface alone loses 0.06 on `foliage`.
+// At a pixel some views may meet no sample and stay open. They take the mean of what other views see behind the focus,
+// if at least this part of all views sees something there; with fewer, part of it is the mean of all that is seen.
+// Slices have the same rule (HF_LAYERS_FAINT), but there less is open. Measured with two surfaces known and 192 views:
+// with a half 43.2 dB on `fence` and 36.3 on `foliage`, with a tenth 46.2 and 36.7, with a fiftieth 46.5 and 37.0, but
+// then one surface alone loses 0.06 on `foliage`.
 #define FAINT (1.0f / 16)
 
 // Highlights are drawn whole, and views may miss what covers a pixel thinly: they count as if this much were covered.
@@ -447,7 +448,8 @@ static void add_lights(struct block *b, int lit)
 
 // ---- result ----
 
-// The weight of a pixel's views, with what they leave open filled; *fill: the factor for what they see behind the focus.
+// The weight of a pixel's views, with what they leave open filled. *fill: the factor for what they see behind the
+// focus.
 // total: the weight of views that leave nothing open.
 static float weight_of(const struct block *b, int at, float total, float *fill)
 {
