@@ -123,6 +123,21 @@ static int make_points(struct hf_layers *l, const struct hf_image *picture, cons
     return err ? err : hf_stopped(l->stop) ? HF_ERR_CANCELLED : HF_OK;
 }
 
+// How far out a point lies along a row or a column, in radii; at least 1.
+static double farthest_point(const struct hf_layers *l)
+{
+    double most = 1;
+    for (int g = 0; g < l->groups; g++)
+        for (int v = 0; v < l->set.views; v++) {
+            const double across = fabs((double)l->point[g][v][0]) * l->wide, down = fabs((double)l->point[g][v][1]);
+            if (across > most)
+                most = across;
+            if (down > most)
+                most = down;
+        }
+    return most;
+}
+
 int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem)
 {
     const size_t n = (size_t)l->set.views, slices = (size_t)l->slices, groups = (size_t)l->groups;
@@ -137,11 +152,7 @@ int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, co
     const int err = make_points(l, picture, mem);
     if (err)
         return err;
-    l->lens_reach = 1;
-    for (int g = 0; g < l->groups; g++)
-        for (int v = 0; v < l->set.views; v++)
-            l->lens_reach =
-                fmax(fmax(fabs((double)l->point[g][v][0]) * l->wide, fabs((double)l->point[g][v][1])), l->lens_reach);
+    l->lens_reach = farthest_point(l);
     for (int g = 0; g < l->groups; g++)
         for (int i = 0; i < l->slices; i++) {
             const double r = hf_layers_slice_radius(l, g, i);
