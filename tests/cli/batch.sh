@@ -233,6 +233,8 @@ for strike in 1 2 3; do
     status=$? command="terminated twice, strike $strike"
     if [ $status -eq 143 ]; then
         check "a second SIGTERM: said" says "stopped; the same command with --resume"
+    elif says "6 done"; then
+        skip "strike $strike: the shot was done before the signal"
     else
         check "SIGTERM: as the first says" says "finishing the frames in work"
     fi
