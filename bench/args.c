@@ -32,10 +32,10 @@ static const struct tool_option options[] = {
      "here, in the source, or where it is installed.", TEXT(images), .commands = "truth|batch|tradeoff|history"},
     {"image", 0, TOOL_FILES, "FILE", "Compare this picture with --truth, in place of the scenes.", TEXT(image), .commands = "truth"},
     {"truth", 0, TOOL_FILES, "FILE", "The reference for --image.", TEXT(truth), .commands = "truth"},
-    {"peels", 0, TOOL_FILES, NULL, "Measure the engine layers on all scenes of --images that have second surfaces, NAME.peel1.exr "
-     "and perhaps NAME.peel2.exr: with one surface known, with two, and with three.", FLAG(peels), .commands = "truth"},
+    {"peels", 0, TOOL_FILES, NULL, "Measure an engine, layers unless --engine is given, on all scenes of --images that have second "
+     "surfaces, NAME.peel1.exr and perhaps NAME.peel2.exr: with one surface known, with two, and with three.", FLAG(peels), .commands = "truth"},
     {"surfaces", 0, TOOL_FILES, "N", "How many surfaces of each pixel are known, 1 (default) to 3: of FILE those in "
-     "FILE.peel1.exr and FILE.peel2.exr, of a built-in scene made ones behind every pixel. Needs --engine layers.",
+     "FILE.peel1.exr and FILE.peel2.exr, of a built-in scene made ones behind every pixel. Needs --engine layers or scatter.",
      COUNT(surfaces, 1, BENCH_SURFACES), .commands = "passes"},
     {"compression", 0, TOOL_FILES, "none|rle|zips|zip|piz|pxr24|b44|b44a|dwaa|dwab", "Only this one. Default "
      "all.", .parse = tool_parse_choice_text, FIELD(compression), .commands = "batch"},
@@ -166,9 +166,9 @@ int bench_args_parse(struct bench_args *args, const char *command, int count, ch
     if (misfit)
         return tool_fail(error, -1, "--%s is of use only with --engine %s, not %s", misfit->name,
                          tool_and(misfit->engines, engines), hf_engine_name(args->params.engine));
-    if (args->surfaces > 1 && args->params.engine != HF_ENGINE_LAYERS)
-        return tool_fail(error, -1, "--surfaces %d is of use only with --engine layers, not %s", args->surfaces,
-                         hf_engine_name(args->params.engine));
+    if (args->surfaces > 1 && args->params.engine != HF_ENGINE_LAYERS && args->params.engine != HF_ENGINE_SCATTER)
+        return tool_fail(error, -1, "--surfaces %d is of use only with --engine layers and scatter, not %s",
+                         args->surfaces, hf_engine_name(args->params.engine));
     if (!args->images)
         find_images(args);
     args->words = words;

@@ -59,6 +59,11 @@ static int read_scene(struct work *w, struct bench_peel_scene *s, const char *fo
                      w->picture.height);
 }
 
+static enum hf_engine engine_of(const struct bench_args *args)
+{
+    return args->engine_given ? args->params.engine : HF_ENGINE_LAYERS;
+}
+
 static int open_subjects(struct work *w, const struct bench_peel_scene *s, const struct bench_peels *t,
                          const struct bench_camera *camera, struct tool_error *log, struct tool_error *error)
 {
@@ -69,7 +74,7 @@ static int open_subjects(struct work *w, const struct bench_peel_scene *s, const
         if (bench_subject_open(subject, &args, &w->picture, log, error))
             return -1;
         bench_subject_lens(subject, camera);
-        subject->params.engine = HF_ENGINE_LAYERS;
+        subject->params.engine = engine_of(t->args);
         subject->params.max_radius = args.max_radius_given ? args.params.max_radius : HF_DERIVE;
         bench_subject_peels(subject, w->peels, k);
     }
@@ -161,10 +166,13 @@ static void table(FILE *out, const void *what)
                     s->at[k].cpu_ms, s->at[k].cpu_ms / s->at[0].cpu_ms);
             fprintf(out, k ? " %12.1f\n" : "\n", s->at[k].ns);
         }
-    fprintf(out,
-            "\n%d threads, engine layers, %s; medians of %d frames, those of a scene in turn; CPU: of all threads; a "
-            "sample: one behind the first of its pixel\n",
-            t->threads, hf_name(HF_NAMES_LAYERS, (int)t->args->params.layers.quality), ROUNDS);
+    const enum hf_engine engine = engine_of(t->args);
+    fprintf(
+        out,
+        "\n%d threads, engine %s%s%s; medians of %d frames, those of a scene in turn; CPU: of all threads; a sample: "
+        "one behind the first of its pixel\n",
+        t->threads, hf_engine_name(engine), engine == HF_ENGINE_LAYERS ? ", " : "",
+        engine == HF_ENGINE_LAYERS ? hf_name(HF_NAMES_LAYERS, (int)t->args->params.layers.quality) : "", ROUNDS);
 }
 
 static void json(FILE *out, const void *what)

@@ -35,8 +35,10 @@ struct hf_layer {
 // what stands where and what stands behind it. A lens sees past edges. What it sees there is taken from the layers that
 // show it, and guessed only where no layer does. The structs of the array follow each other at a distance of
 // layers->size bytes. dst must not overlap a layer. With one layer the call is hf_render_region. With several, the
-// engine must be HF_ENGINE_LAYERS, else the call returns HF_ERR_ARG. If params->focus is HF_DERIVE, the focus comes
-// from the first layer's depth. Errors as for hf_render_region.
+// engine must be HF_ENGINE_LAYERS or HF_ENGINE_SCATTER, else the call returns HF_ERR_ARG. The scatter engine takes of
+// each pixel the first surface that is hidden, where something in front of the focus hides it, and guesses what is
+// hidden elsewhere. If params->focus is HF_DERIVE, the focus comes from the first layer's depth. Errors as for
+// hf_render_region.
 HF_API int hf_render_layers(struct hf_context *c, const struct hf_image *dst, const struct hf_layer *layers, int count,
                             const struct hf_params *params, const struct hf_region *region);
 
@@ -65,8 +67,9 @@ struct hf_deep {
 
 // Render a region (NULL: all) of a deep picture as hf_render_region does. Pixels without samples are transparent and
 // infinitely far away. Three depths of a pixel are kept: what is seen, and two that may be hidden. Samples of about the
-// same blur are put over each other first, and a medium is cut into eight parts. The engine must be HF_ENGINE_LAYERS,
-// and params->focus must not be HF_DERIVE, else the call returns HF_ERR_ARG. Errors as for hf_render_region.
+// same blur are put over each other first, and a medium is cut into eight parts. The engine must be HF_ENGINE_LAYERS
+// or HF_ENGINE_SCATTER, which takes the first of the two, and params->focus must not be HF_DERIVE, else the call returns
+// HF_ERR_ARG. Errors as for hf_render_region.
 HF_API int hf_render_deep(struct hf_context *c, const struct hf_image *dst, const struct hf_deep *deep,
                           const struct hf_params *params, const struct hf_region *region);
 

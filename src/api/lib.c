@@ -279,6 +279,7 @@ static int run_resolved(struct hf_context *c, const struct call *call, const str
             return err;
         hf_setup_make(&s, &merged.image, &call->dst, &merged.depth, r, c->engine[r->params.engine].own);
         s.stop = &c->stop;
+        s.several = 1;
         hf_engine_def(s.engine)->own.know(c->engine[s.engine].own, &known);
     }
     if (region)
@@ -378,7 +379,8 @@ static int check_engine(const struct call *call, struct hf_message *message)
     const struct hf_engine_def *engine = hf_engine_def(call->given.params.engine);
     if (!engine || engine->own.know)
         return HF_OK;
-    return hf_bad(message, "engine", "is %s, which takes one picture; the engine layers takes several", engine->name);
+    return hf_bad(message, "engine", "is %s, which takes one picture; the engines layers and scatter take several",
+                  engine->name);
 }
 
 // Settings for the frame: those of the parameters, or what the budget leaves of them. *steps: how many it chooses from.

@@ -391,7 +391,8 @@ void hf_plan_classify(struct hf_plan *p, const struct hf_setup *s, int i)
             needs |= spread_chunk(&p->near[at], chunk, near, tile, &active) ? HF_NEAR : 0u;
             needs |= spread_chunk(&p->far[at], chunk, far, tile, &active) ? HF_FAR : 0u;
         }
-    p->tile_needs[i] = (uint8_t)(p->no_skip && wanted ? HF_FIELDS : needs);
+    const int all = wanted && (p->no_skip || (needs && s->several));
+    p->tile_needs[i] = (uint8_t)(all ? HF_FIELDS : needs);
     p->tile_active[i] = p->no_skip ? tile : active;
 }
 

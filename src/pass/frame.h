@@ -98,6 +98,7 @@ struct hf_setup {
     // Of the result, full-resolution pixels, that is stored; part: that is not all of it.
     struct hf_rect region;
     int part;
+    int several;       // surfaces are known that the picture hides: any tile with blur may show light of both fields
     atomic_int *stop;  // not 0: the frame is cancelled, and passes return as soon as they see it (base/stop.h)
 };
 

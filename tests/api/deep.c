@@ -338,9 +338,16 @@ int main(void)
         test_region();
     }
     params.layers.quality = HF_LAYERS_STANDARD;
+    const int rounds = getenv("HF_LONG") ? 2000 : 40;
     test_refused();
     test_cancelled();
-    test_random(getenv("HF_LONG") ? 2000 : 40);
+    test_random(rounds);
+    params.engine = HF_ENGINE_SCATTER;
+    test_neutral();
+    test_layers();
+    test_constant();
+    test_region();
+    test_random(rounds);
     hf_close(&context);
     return check_report();
 }

@@ -74,13 +74,13 @@ static int same(void)
     return !memcmp(out[0].rgba, out[1].rgba, sizeof out[0].rgba);
 }
 
-// The most green anywhere: the bar hides it, so a lens alone can bring it out.
-static float green(const struct picture *p)
+// The green of the middle row: what the bar hides, so a lens alone can bring it out.
+static double green(const struct picture *p)
 {
-    float most = 0;
-    for (int i = 0; i < N; i++)
-        most = fmaxf(p->rgba[4 * i + 1], most);
-    return most;
+    double sum = 0;
+    for (int x = 0; x < W; x++)
+        sum += (double)p->rgba[4 * (H / 2 * W + x) + 1];
+    return sum;
 }
 
 static void test_neutral(void)
@@ -208,15 +208,50 @@ static void test_budget(void)
     params.run.budget_ms = 0;
 }
 
-// What the bar hides is seen beside it. One picture cannot know that colour.
+// The green of a row by rays: through the point u of the lens a pixel sees each surface r u beside itself. near, far: radii
+// of a bar of half-width `half` and of the wall, which is green only where the bar hides it.
+static double green_by_rays(double near, double far, double half)
+{
+    enum { POINTS = 400 };
+    double sum = 0, all = 0;
+    for (int i = 0; i < POINTS; i++) {
+        const double u = (i + 0.5) / POINTS * 2 - 1, weight = sqrt(1 - u * u);
+        for (int x = 0; x < W; x++)
+            sum += fabs(x - W / 2 + near * u) >= half && fabs(x - W / 2 + far * u) < half ? weight : 0;
+        all += weight;
+    }
+    return sum / all;
+}
+
+// What the bar hides is seen beside it: here all that is green, as the bar's edges are hard. One picture cannot know it.
+// Slices and fields know only how much of a hidden place is covered, and not from where: they show 0.64 to 0.73 of it.
+// Best, which goes through points of the lens, shows all.
 static void test_hidden(void)
 {
+    const float near = -8, far = 6;
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const int bar = abs(x - W / 2) < 10;
+            set(&front, x, y, 0.8f, 0, 0, (float)bar, near);
+            set(&back, x, y, 0, (float)bar, (float)!bar, 1, far);
+            set(&whole, x, y, bar ? 0.8f : 0, 0, (float)!bar, 1, bar ? near : far);
+            set(&peel, x, y, 0, 1, 0, (float)bar, far);
+        }
     const struct hf_layer two[] = {layer_of(&front, HF_LAYER_WHOLE), layer_of(&back, HF_LAYER_WHOLE)},
                           peels[] = {layer_of(&whole, HF_LAYER_WHOLE), layer_of(&peel, HF_LAYER_PEEL)};
+    struct picture *const all[] = {&front, &back, &whole, &peel};
+    const double want = green_by_rays((double)near, (double)far, 9.5);
+    for (int i = 0; i < 4; i++)
+        all[i]->depth.type = HF_DEPTH_COC;
+    params.max_radius = 12;
+    CHECK_INT(render(&out[0], peels, 1), HF_OK);
+    CHECK_MSG(green(&out[0]) <= 0, "one picture has %g of what the bar hides", green(&out[0]));
     CHECK_INT(render(&out[0], two, 2), HF_OK);
-    CHECK_MSG(green(&out[0]) > 0.5f, "layers: only %g of what the bar hides", green(&out[0]));
+    CHECK_MSG(fabs(green(&out[0]) / want - 1) < 0.4, "layers: %g of what the bar hides, rays %g", green(&out[0]), want);
     CHECK_INT(render(&out[0], peels, 2), HF_OK);
-    CHECK_MSG(green(&out[0]) > 0.5f, "peels: only %g of what the bar hides", green(&out[0]));
+    CHECK_MSG(fabs(green(&out[0]) / want - 1) < 0.4, "peels: %g of what the bar hides, rays %g", green(&out[0]), want);
+    params.max_radius = HF_DERIVE;
+    paint();
 }
 
 // Behind the bar a part of the wall opens on something farther, which no lens sees past the bar. What a lens sees of
@@ -310,8 +345,8 @@ static void test_refused(void)
     peel.image.width--;
     CHECK(refused(two, 2, "layers[1]"));
     peel.image.width++;
-    params.engine = HF_ENGINE_SCATTER;
-    CHECK(refused(two, 2, "scatter"));
+    params.engine = HF_ENGINE_GATHER;
+    CHECK(refused(two, 2, "gather"));
     params.engine = HF_ENGINE_LAYERS;
 }
 
@@ -337,6 +372,17 @@ int main(void)
         test_guessed();
     }
     params.layers.quality = HF_LAYERS_STANDARD;
+    params.engine = HF_ENGINE_SCATTER;
+    for (int half = 0; half < 2; half++) {
+        params.scatter.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+        test_neutral();
+        test_edges();
+        test_hidden();
+        test_constant();
+        test_region();
+        test_same_blur();
+    }
+    params.engine = HF_ENGINE_LAYERS;
     test_opening();
     test_same_blur();
     test_budget();

@@ -174,7 +174,7 @@ bad 3 "--over|no-depth.exr|depth" bar.exr --over no-depth.exr -o o.exr $look
 bad 3 "--peel|garbage.exr" both.exr --peel garbage.exr -o o.exr $look
 bad 1 "--over|--peel" bar.exr --over wall.exr --peel peel.exr -o o.exr $look
 bad 1 "--peel|3 times" both.exr --peel peel.exr --peel peel.exr --peel peel.exr -o o.exr $look
-bad 1 "--over|layers|scatter" bar.exr --over wall.exr -o o.exr $look --engine scatter
+bad 1 "--over|layers|scatter|gather" bar.exr --over wall.exr -o o.exr $look --engine gather
 bad 1 "--merge|--layer" file.exr --merge --layer Near -o o.exr $look
 bad 1 "--merge|--peel" file.exr --merge --layer all --peel peel.exr -o o.exr $look
 bad 1 "--depth-file|--over" bar.exr --over wall.exr -o o.exr $look --depth-file depth.exr

@@ -63,7 +63,7 @@ static struct hf_params any_look(struct bytes *b)
 {
     struct hf_params p = hf_default_params();
     const unsigned flags = take_byte(b);
-    p.engine = flags % 16 ? HF_ENGINE_LAYERS : HF_ENGINE_GATHER;
+    p.engine = flags % 16 ? (flags & 32 ? HF_ENGINE_SCATTER : HF_ENGINE_LAYERS) : HF_ENGINE_GATHER;
     p.focus = flags % 32 == 17 ? HF_DERIVE : 2;
     p.range.distance = 0.5f;
     p.max_radius = (float)(take_byte(b) % 128) / 8;

@@ -4,6 +4,7 @@
 #include "pixel/pass_c.h"
 #include "engine/scatter/behind.h"
 #include "engine/scatter/kernels.h"
+#include "engine/scatter/known.h"
 #include "engine/scatter/walk.h"
 
 // The bit for the exponent of v > 0: each bit stands for eight exponents, the highest for sixteen.
@@ -26,17 +27,17 @@ void hf_scatter_note_c(const float *radius, float *const colour[4], int channels
     }
 }
 
-// Note the brightness of a row's backs.
-static void note_backs(const struct hf_frame *f, const struct hf_sides *row, int n)
+// Note the brightness of a row of samples behind the first.
+static void note_backs(const struct hf_frame *f, const struct hf_backs *b, int n)
 {
     float *colour[4], *radius = hf_line(f, 12);
     int count = 0;
     for (int c = 0; c < 4; c++)
         colour[c] = hf_line(f, 8 + c);
-    for (int x = hf_edges_next(row->share, 0, n); x < n; x = hf_edges_next(row->share, x + 1, n)) {
-        radius[count] = row->radius[1][x];
+    for (int x = hf_edges_next(b->share, 0, n); x < n; x = hf_edges_next(b->share, x + 1, n)) {
+        radius[count] = b->radius[x];
         for (int c = 0; c < f->s->channels; c++)
-            colour[c][count] = row->colour[1][c][x];
+            colour[c][count] = b->colour[c][x];
         count++;
     }
     hf_scatter_kernels(f)->note(radius, colour, f->s->channels, count, f->counts);
@@ -57,11 +58,17 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
             hf_row(&f->buf[HF_BUF_BACK], f->s->channels, x0, y, row.colour[1]);
             row.share = hf_at(&f->buf[HF_BUF_BACK_AT], 0, x0, y);
             row.radius[1] = hf_at(&f->buf[HF_BUF_BACK_AT], 1, x0, y);
-            if (hf_edges_row(&e, y, &row))
-                note_backs(f, &row, n);
+            hf_edges_row(&e, y, &row);
+            hf_scatter_know_edges(f, x0, y, n, &row);
         } else {
             hf_read_pixels(f, r.x0, y, r.x1 - r.x0, row.colour[0], f->seen);
             f->k->radius_row(f, x0, y, n, row.radius[0], NULL);
+        }
+        hf_scatter_know(f, x0, y, n, &row);
+        for (int i = 0; i < HF_BACKS; i++) {
+            struct hf_backs b;
+            if (hf_scatter_backs(f, i, x0, y, n, &b))
+                note_backs(f, &b, n);
         }
         hf_scatter_kernels(f)->note(row.radius[0], row.colour[0], f->s->channels, n, f->counts);
     }
@@ -221,6 +228,7 @@ static void composite_row(const struct hf_frame *f, int y, struct hf_rect r, con
         if (behind) {
             row.behind = hf_line(f, 18);
             hf_scatter_behind_row(&line, &row, c, out[c], hf_line(f, 18));
+            hf_scatter_known_row(f, &row, c, hf_line(f, 18));
         }
         hf_scatter_kernels(f)->blend(&row, out[c]);
         if (backs.count)

@@ -27,7 +27,7 @@
 #include "engine/scatter/kernels.h"
 
 #define B(name) (1u << HF_BUF_##name)
-#define SOURCES (B(SOURCE) | B(RADIUS) | B(BACK) | B(BACK_AT))
+#define SOURCES (B(SOURCE) | B(RADIUS) | B(BACK) | B(BACK_AT) | B(HIDDEN) | B(HIDDEN_AT))
 
 enum {
     HALO_RADIUS = 1,  // the largest CoC radius
@@ -52,6 +52,8 @@ static const struct hf_buf_def bufs[HF_SCATTER_BUFS] = {
     [HF_BUF_RADIUS] = {"radius", .frame = 1, .bare = 1, .x = 1, .y = 1},
     [HF_BUF_BACK] = {"back", .frame = 1, .bare = 1, .x = 1, .y = 1},
     [HF_BUF_BACK_AT] = {"backat", .frame = 1, .bare = 1, .x = 1, .y = 1},
+    [HF_BUF_HIDDEN] = {"hidden", .frame = 1, .bare = 1, .x = 1, .y = 1},
+    [HF_BUF_HIDDEN_AT] = {"hiddenat", .frame = 1, .bare = 1, .x = 1, .y = 1},
     [HF_BUF_FAR_SUM] = {"far", .x = 1, .y = 1, .field = HF_FAR},
     [HF_BUF_FAR_WEIGHT] = {"farweight", .x = 1, .y = 1, .field = HF_FAR},
     [HF_BUF_NEAR_SUM] = {"near", .x = 1, .y = 1, .field = HF_NEAR},
@@ -96,7 +98,14 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     (void)depth;
     (void)p;
     t->ready = t->around_x = t->around_y = t->mixed = 0;
+    t->given = NULL;
     s->sharp_radius = 0.5f;
+}
+
+static void know(void *own, const struct hf_known *known)
+{
+    struct hf_scatter *t = own;
+    t->given = known;
 }
 
 static int build(struct hf_aperture *to, const struct hf_aperture_key *key, const struct hf_image *picture,
@@ -110,7 +119,8 @@ static int prepare(void *own, const struct hf_setup *s, const struct hf_params *
     struct hf_scatter *t = own;
     struct hf_aperture *aperture = &t->aperture;
     const struct hf_aperture_params *a = &p->aperture;
-    *t = (struct hf_scatter){.aperture = *aperture, .turned = t->turned, .half_from = 24, .half_to = 28, .fade = 1.5f};
+    *t = (struct hf_scatter){
+        .given = t->given, .aperture = *aperture, .turned = t->turned, .half_from = 24, .half_to = 28, .fade = 1.5f};
     if (p->scatter.resolution == HF_RESOLUTION_HALF) {
         t->half_from = -1;
         t->half_to = 0;
@@ -190,6 +200,8 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     (void)mem;
     t->largest[0] = fmaxf(-found->radius_min, 0);
     t->largest[1] = fmaxf(found->radius_max, 0);
+    if (t->given)
+        t->largest[1] = fmaxf(t->largest[1], t->given->radius_max);
     t->mixed = found->radius_max - found->radius_min > HF_EDGES_FROM;
     t->behind = hf_behind_levels(t->largest[0]);
     t->slices = hf_scatter_slice_count(t->largest[1]);
@@ -281,6 +293,8 @@ static int channels(const struct hf_setup *s, int b)
     const struct hf_scatter *t = hf_scatter(s);
     if (b == HF_BUF_RADIUS)
         return 1;
+    if (b == HF_BUF_HIDDEN || b == HF_BUF_HIDDEN_AT)
+        return !t->given ? 0 : b == HF_BUF_HIDDEN ? s->channels : 2;
     if (b == HF_BUF_BACK || b == HF_BUF_BACK_AT)
         return !t->mixed ? 0 : b == HF_BUF_BACK ? s->channels : 2;
     return b == HF_BUF_FAR_WEIGHT || b == HF_BUF_NEAR_WEIGHT ? (t->ready ? t->groups : 1) : s->channels;
@@ -373,8 +387,8 @@ const struct hf_engine_def hf_scatter_engine = {
     .buf_count = HF_SCATTER_BUFS,
     .limits = {.aperture = HF_APERTURE_ALL, .check = check},
     .kernels = {sizeof(struct hf_scatter_kernels), hf_scatter_kernels_init},
-    .own = {sizeof(struct hf_scatter), .resolve = resolve, .prepare = prepare, .measure = measure, .made = made,
-            .release = release, .held = held},
+    .own = {sizeof(struct hf_scatter), .resolve = resolve, .know = know, .prepare = prepare, .measure = measure,
+            .made = made, .release = release, .held = held},
     .plan = {.channels = channels, .halo = halo, .spread = spread, .cell = cell, .work = work},
     .cost = {.numbers = cost},
 };

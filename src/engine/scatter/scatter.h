@@ -5,6 +5,7 @@
 
 #include <float.h>
 
+#include "pass/known.h"
 #include "pixel/aperture.h"
 
 // The engine's buffers.
@@ -13,6 +14,8 @@ enum hf_scatter_buf {
     HF_BUF_RADIUS,   // its signed radius
     HF_BUF_BACK,     // the back's colour, undefined where the back has no share
     HF_BUF_BACK_AT,  // the back's share, and its radius
+    HF_BUF_HIDDEN,   // of frames with known surfaces: the first that near samples hide, likewise (known.c)
+    HF_BUF_HIDDEN_AT,
     HF_BUF_FAR_SUM,
     HF_BUF_FAR_WEIGHT,
     HF_BUF_NEAR_SUM,
@@ -53,15 +56,16 @@ struct hf_scatter {
     float half_from, half_to, half_slope;
     float fade, fade_slope;  // from this radius on the pixel itself is invisible; 1 / (fade - 0.5)
     int reach_x[2][2],
-        reach_y[2][2];          // [field: near, far][level]: reach of the sprites in the level's pixels; -1: none
-    int around_x, around_y;     // reach around a cell, half-resolution pixels; valid once the frame's depth is known
-    int mixed;                  // there may be mixed pixels
-    int slices;                 // of the far field (slice.c)
-    int behind;                 // levels of neighbourhoods that near radii need (pixel/behind.h)
-    float ring, cat_eye;        // radius of the hole; how far the second circle moves in the corners
-    float trust;                // 1 / the weight from which on a field's colour counts fully; INFINITY: every weight
-    float corner;               // 1 / the picture's diagonal, pixels
-    struct hf_bins bins[2][2];  // [level][of colour, of alpha]
+        reach_y[2][2];             // [field: near, far][level]: reach of the sprites in the level's pixels; -1: none
+    int around_x, around_y;        // reach around a cell, half-resolution pixels; valid once the frame's depth is known
+    int mixed;                     // there may be mixed pixels
+    const struct hf_known *given;  // known surfaces, or NULL
+    int slices;                    // of the far field (slice.c)
+    int behind;                    // levels of neighbourhoods that near radii need (pixel/behind.h)
+    float ring, cat_eye;           // radius of the hole; how far the second circle moves in the corners
+    float trust;                   // 1 / the weight from which on a field's colour counts fully; INFINITY: every weight
+    float corner;                  // 1 / the picture's diagonal, pixels
+    struct hf_bins bins[2][2];     // [level][of colour, of alpha]
     // Samples are summed and composited times dim, a power of two below 1 if some would overflow.
     float dim, undim, most;  // 1 / dim; dim times the largest float
 };

@@ -6,6 +6,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "engine/scatter/known.h"
 #include "engine/scatter/walk.h"
 
 // Radius where the second slice begins; ratio of one slice's radius to the next; ratio over which a source fades in.
@@ -40,16 +41,20 @@ void hf_scatter_slice_range(const struct hf_frame *f, struct hf_rect r, float *l
     const int y0 = hf_max(2 * (r.y0 - t->around_y), 0), y1 = hf_min(2 * (r.y1 + t->around_y), f->s->height);
     float low = FLT_MAX, high = 0;
     for (int y = y0; y < y1 && !hf_stopped(f->s->stop); y++) {
-        const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y), *share = hf_back_shares(f, x0, y, x1 - x0);
+        const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y);
         for (int x = 0; x < x1 - x0; x++) {
             const float v = radius[x] > 0 ? radius[x] : FLT_MAX;
             low = v < low ? v : low;
             high = radius[x] > high ? radius[x] : high;
         }
-        for (int x = hf_edges_next(share, 0, x1 - x0); x < x1 - x0; x = hf_edges_next(share, x + 1, x1 - x0)) {
-            const float v = *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x0 + x, y);
-            low = v > 0 && v < low ? v : low;
-            high = v > high ? v : high;
+        for (int i = 0, n = x1 - x0; i < HF_BACKS; i++) {
+            struct hf_backs b;
+            if (!hf_scatter_backs(f, i, x0, y, n, &b))
+                continue;
+            for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n)) {
+                low = b.radius[x] > 0 && b.radius[x] < low ? b.radius[x] : low;
+                high = b.radius[x] > high ? b.radius[x] : high;
+            }
         }
     }
     *least = low;

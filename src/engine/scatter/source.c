@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/scatter/known.h"
 #include "engine/scatter/walk.h"
 
 void hf_source_weights_c(const struct hf_scatter *t, float sign, const float *radius, const float *const colour[3],
@@ -284,16 +285,15 @@ void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, 
     }
 }
 
-void hf_add_back(struct walk *w, int x, int y, int to_x, int to_y, float part)
+void hf_add_back(struct walk *w, const struct hf_backs *b, int x, int to_x, int to_y, float part)
 {
-    const struct hf_frame *f = w->f;
-    const float size = (w->field ? 1 : -1) * *hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y), half = hf_half_part(w->t, size);
-    const float weight = hf_field_weight(w->t, size) * (w->level ? half : 1 - half) *
-                         (*hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) * part) * hf_scatter_slice_part(&w->slice, size);
+    const float size = (w->field ? 1 : -1) * b->radius[x], half = hf_half_part(w->t, size);
+    const float weight = hf_field_weight(w->t, size) * (w->level ? half : 1 - half) * (b->share[x] * part) *
+                         hf_scatter_slice_part(&w->slice, size);
     float v[3] = {0};
     if (!(weight > 0))
         return;
     for (int c = 0; c < w->group->channels; c++)
-        v[c] = *hf_at(&f->buf[HF_BUF_BACK], w->group->channel[c], x, y) * (weight * w->t->dim);
+        v[c] = b->colour[w->group->channel[c]][x] * (weight * w->t->dim);
     hf_add_source(w, to_x, to_y, size * (w->level ? 0.5f : 1) * w->group->factor[w->field], v, weight);
 }

@@ -5,6 +5,7 @@
 // jump.
 #include <string.h>
 
+#include "engine/scatter/known.h"
 #include "engine/scatter/walk.h"
 
 // The weight with which a pixel of radius r is drawn at half resolution.
@@ -217,17 +218,21 @@ static void list_lone(struct walk *w, int y, int q, float part)
     hf_flush_sources(w);
 }
 
-// The same for the backs of mixed pixels.
+// The same for what lies behind the pixels' first samples.
 static void list_backs(struct walk *w, int y, int q, float part)
 {
     const int x0 = 2 * w->tent_x0, n = hf_min(2 * w->tent_x1, w->f->s->width) - x0;
-    const float *share = hf_back_shares(w->f, x0, y, n);
-    for (int x = hf_edges_next(share, 0, n); x < n; x = hf_edges_next(share, x + 1, n))
-        for (int side = 0; side < 2; side++) {
-            const int column = column_of(w, x0 + x, side);
-            if (column >= 0)
-                hf_add_back(w, x0 + x, y, column, q, part * (side ? 0.25f : 0.75f));
-        }
+    struct hf_backs b;
+    for (int i = 0; i < hf_scatter_sets(w->field); i++) {
+        if (!hf_scatter_backs(w->f, i, x0, y, n, &b))
+            continue;
+        for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n))
+            for (int side = 0; side < 2; side++) {
+                const int column = column_of(w, x0 + x, side);
+                if (column >= 0)
+                    hf_add_back(w, &b, x, column, q, part * (side ? 0.25f : 0.75f));
+            }
+    }
     hf_flush_sources(w);
 }
 
