@@ -65,13 +65,17 @@ static int by_depth(const void *a, const void *b)
     return compare(a, b);
 }
 
+// Samples of most files are in order already.
 static void sort(struct deep_sample *s, size_t n)
 {
-    if (n > FEW) {
+    size_t sorted = 1;
+    while (sorted < n && (s[sorted - 1].near < s[sorted].near || compare(&s[sorted - 1], &s[sorted]) <= 0))
+        sorted++;
+    if (sorted < n && n > FEW) {
         qsort(s, n, sizeof *s, by_depth);
         return;
     }
-    for (size_t i = 1; i < n; i++) {
+    for (size_t i = sorted; i < n; i++) {
         const struct deep_sample own = s[i];
         size_t at = i;
         for (; at > 0 && compare(&s[at - 1], &own) > 0; at--)

@@ -51,9 +51,13 @@ static void flatten_pixel(const struct flattening *f, struct order *list, size_t
     const uint64_t from = d->first[pixel];
     const size_t n = (size_t)(d->first[pixel + 1] - from);
     float sum[4] = {0}, open = 1, depth = INFINITY;
-    for (size_t i = 0; i < n; i++)
+    int sorted = 1;  // as most files are
+    for (size_t i = 0; i < n; i++) {
         list[i] = (struct order){isnan(d->depth[from + i]) ? INFINITY : d->depth[from + i], from + i};
-    qsort(list, n, sizeof(*list), by_depth);
+        sorted &= i == 0 || list[i - 1].depth <= list[i].depth;
+    }
+    if (!sorted)
+        qsort(list, n, sizeof(*list), by_depth);
     for (size_t i = 0; i < n; i++) {
         const uint64_t at = list[i].at;
         const float alpha = part(d->alpha[at]);
