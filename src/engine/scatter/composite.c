@@ -67,7 +67,7 @@ void hf_scatter_prepare_c(const struct hf_frame *f, struct hf_rect r)
         hf_scatter_know(f, x0, y, n, &row);
         for (int i = 0; i < HF_BACKS; i++) {
             struct hf_backs b;
-            if (hf_scatter_backs(f, i, x0, y, n, &b))
+            if (hf_scatter_backs(f, i, x0, y, &b))
                 note_backs(f, &b, n);
         }
         hf_scatter_kernels(f)->note(row.radius[0], row.colour[0], f->s->channels, n, f->counts);

@@ -10,7 +10,7 @@
 
 #include "engine/scatter/known.h"
 
-int hf_scatter_backs(const struct hf_frame *f, enum hf_backs_set set, int x, int y, int n, struct hf_backs *b)
+int hf_scatter_backs(const struct hf_frame *f, enum hf_backs_set set, int x, int y, struct hf_backs *b)
 {
     static const int buffers[HF_BACKS][2] = {{HF_BUF_BACK, HF_BUF_BACK_AT}, {HF_BUF_HIDDEN, HF_BUF_HIDDEN_AT}};
     const struct hf_scatter *t = hf_scatter(f->s);
@@ -19,7 +19,7 @@ int hf_scatter_backs(const struct hf_frame *f, enum hf_backs_set set, int x, int
     b->share = hf_at(&f->buf[buffers[set][1]], 0, x, y);
     b->radius = hf_at(&f->buf[buffers[set][1]], 1, x, y);
     hf_row(&f->buf[buffers[set][0]], f->s->channels, x, y, b->colour);
-    return hf_edges_next(b->share, 0, n) < n;
+    return 1;
 }
 
 // The share of one of a pixel's two visible samples.
@@ -63,7 +63,7 @@ void hf_scatter_know(const struct hf_frame *f, int x0, int y, int n, const struc
     if (!t->given)
         return;
     const struct hf_surface *known = &t->given->behind[0];
-    hf_scatter_backs(f, HF_BACKS_HIDDEN, x0, y, n, &to);
+    hf_scatter_backs(f, HF_BACKS_HIDDEN, x0, y, &to);
     for (int x = 0; x < n; x++) {
         const ptrdiff_t at = y * t->given->stride + x0 + x;
         const float all = known->weight[at], r = known->radius[at], covered = all > 0 ? cover(t, visible, x, r) : 0;
@@ -105,7 +105,7 @@ void hf_scatter_known_row(const struct hf_frame *f, const struct hf_scatter_row 
 {
     const struct hf_scatter *t = hf_scatter(f->s);
     struct hf_backs b;
-    if (!hf_scatter_backs(f, HF_BACKS_HIDDEN, row->x, row->y, row->n, &b))
+    if (!hf_scatter_backs(f, HF_BACKS_HIDDEN, row->x, row->y, &b))
         return;
     const float *mixed = hf_back_shares(f, row->x, row->y, row->n);
     for (int x = hf_edges_next(b.share, 0, row->n); x < row->n; x = hf_edges_next(b.share, x + 1, row->n)) {

@@ -18,8 +18,8 @@ static inline int hf_scatter_sets(int field)
 struct hf_backs {
     float *share, *radius, *colour[4];
 };
-// A row of n pixels from (x, y) on. Returns 0 if none of them has a sample of the set.
-int hf_scatter_backs(const struct hf_frame *f, enum hf_backs_set set, int x, int y, int n, struct hf_backs *b);
+// The row of pixels from (x, y) on. Returns 0 if the frame has no such samples.
+int hf_scatter_backs(const struct hf_frame *f, enum hf_backs_set set, int x, int y, struct hf_backs *b);
 
 // Take known edges of n pixels from (x, y) on in place of what un-mixing found.
 void hf_scatter_know_edges(const struct hf_frame *f, int x, int y, int n, const struct hf_sides *row);

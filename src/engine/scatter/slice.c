@@ -49,7 +49,7 @@ void hf_scatter_slice_range(const struct hf_frame *f, struct hf_rect r, float *l
         }
         for (int i = 0, n = x1 - x0; i < HF_BACKS; i++) {
             struct hf_backs b;
-            if (!hf_scatter_backs(f, i, x0, y, n, &b))
+            if (!hf_scatter_backs(f, i, x0, y, &b))
                 continue;
             for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n)) {
                 low = b.radius[x] > 0 && b.radius[x] < low ? b.radius[x] : low;

@@ -224,7 +224,7 @@ static void list_backs(struct walk *w, int y, int q, float part)
     const int x0 = 2 * w->tent_x0, n = hf_min(2 * w->tent_x1, w->f->s->width) - x0;
     struct hf_backs b;
     for (int i = 0; i < hf_scatter_sets(w->field); i++) {
-        if (!hf_scatter_backs(w->f, i, x0, y, n, &b))
+        if (!hf_scatter_backs(w->f, i, x0, y, &b))
             continue;
         for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n))
             for (int side = 0; side < 2; side++) {

@@ -54,7 +54,7 @@ static void list_full(struct walk *w, int y0, int y1)
     for (int i = 0, n = x1 - x0, sets = hf_scatter_sets(w->field); i < sets * (y1 - y0); i++) {
         const int y = y0 + i / sets;
         struct hf_backs b;
-        if (!hf_scatter_backs(w->f, i % sets, x0, y, n, &b))
+        if (!hf_scatter_backs(w->f, i % sets, x0, y, &b))
             continue;
         for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n))
             hf_add_back(w, &b, x, x0 + x, y, 1);
