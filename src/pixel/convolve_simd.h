@@ -97,24 +97,68 @@ HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, 
     }
 }
 
+// Of a row, which blocks of 16 columns of the input hold something else than 0, and which of the result are wanted: bits, see
+// convolve_blocks. What is not wanted may be anything.
+struct convolve_row {
+    uint64_t filled, wanted;
+};
+
+// The blocks that have columns x0 to x1 - 1: column x is in block x / 16, and every 64th shares a bit.
+HF_INLINE uint64_t convolve_blocks(int x0, int x1)
+{
+    const int first = x0 >> 4, n = ((x1 - 1) >> 4) - first + 1, at = first & 63;
+    const uint64_t run = n < 64 ? ((uint64_t)1 << n) - 1 : ~(uint64_t)0;
+    return run << at | run >> (-at & 63);
+}
+
+// What a strip of columns reads of rows, and what it writes. NULL: all.
+struct convolve_window {
+    const struct convolve_row *row;
+    uint64_t reads, writes;
+};
+
+HF_INLINE int window_reads(const struct convolve_window *w, int y)
+{
+    return !w->row || w->row[y].filled & w->reads;
+}
+
+HF_INLINE int window_wants(const struct convolve_window *w, int y)
+{
+    return !w->row || w->row[y].wanted & w->writes;
+}
+
+// An input row that holds nothing still ends the sum of the output row that it is the last of.
+HF_INLINE void row_end(const struct hf_taps *t, const int s, float *above)
+{
+    for (int v = 0; v < s && t->scale != 1; v++)
+        vf_store(above + v * VF_N, vf_mul(vf_load(above + v * VF_N), vf_set1(t->scale)));
+}
+
 // s vectors of columns. Each input row is spread over the output rows it reaches: those are sums that grow from top to
-// bottom, and stay in the first-level cache while they do.
+// bottom, and stay in the first-level cache while they do. Adding nothing but 0 changes no bit.
 HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_t in_stride, float *out,
                               ptrdiff_t out_stride, int height, const int symmetric, const int s,
-                              const struct convolve_term *terms, float *h, atomic_int *stop)
+                              const struct convolve_window *w, const struct convolve_term *terms, float *h,
+                              atomic_int *stop)
 {
     const int ry = t->ry, step = s * VF_N;
     for (int y = -ry; y < height + ry && !hf_stopped(stop); y++) {
-        prefetch_row(in + (y + CONVOLVE_AHEAD) * in_stride - t->rx, step + 2 * t->rx);
-        row_pairs(in + y * in_stride, t->rx, symmetric, t->runs, s, h);
         if (y + ry < height)  // reached for the first time
 #pragma GCC unroll 16
             for (int v = 0; v < s; v++)
                 vf_store(out + (y + ry) * out_stride + v * VF_N, vf_zero());
+        if (!window_reads(w, y)) {
+            if (y >= ry)
+                row_end(t, s, out + (y - ry) * out_stride);
+            continue;
+        }
+        prefetch_row(in + (y + CONVOLVE_AHEAD) * in_stride - t->rx, step + 2 * t->rx);
+        row_pairs(in + y * in_stride, t->rx, symmetric, t->runs, s, h);
         for (int k = 0; k < t->rows; k++) {
             const int up = symmetric ? y - k : y - k + ry, down = y + k;
-            float *above = up >= 0 && up < height ? out + up * out_stride : NULL;
-            float *below = symmetric && k && down >= 0 && down < height ? out + down * out_stride : NULL;
+            float *above = up >= 0 && up < height && window_wants(w, up) ? out + up * out_stride : NULL;
+            float *below =
+                symmetric && k && down >= 0 && down < height && window_wants(w, down) ? out + down * out_stride : NULL;
             if (above || below)
                 row_sum(terms + t->first[k], terms + t->first[k + 1], s, h, above, below,
                         k == t->rows - 1 && t->scale != 1 ? &t->scale : NULL);
@@ -138,6 +182,8 @@ struct convolve_job {
     const float *full;  // rows where gain times this is 1 throughout are not wanted after all; NULL: there are none
     ptrdiff_t full_stride;
     float gain;
+    const struct convolve_row *row;  // the first row's; NULL: nothing is known. Tap sets without a column of their own
+    int x0;                          // the first column
     atomic_int *stop;
 };
 
@@ -247,10 +293,13 @@ HF_INLINE void convolve_planes(const struct hf_taps *t, const struct convolve_jo
     rows_needed(j, x, height, s, &y0, &y1);
     for (int i = 0; i < j->planes; i++)
         clear_rest(j, i, x, x, height, s, y0, y1);
+    const int left = j->x0 + x, right = left + s * VF_N;
+    const struct convolve_window w = {j->row ? j->row + y0 : NULL, convolve_blocks(left - t->rx, right + t->rx),
+                                      convolve_blocks(left, right)};
     for (int i = 0; i < j->planes && y0 < y1; i++)
         convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i],
-                       job_out(j, i, x, x) + y0 * j->out_stride[i], j->out_stride[i], y1 - y0, symmetric, s, terms, h,
-                       j->stop);
+                       job_out(j, i, x, x) + y0 * j->out_stride[i], j->out_stride[i], y1 - y0, symmetric, s, &w, terms,
+                       h, j->stop);
 }
 
 HF_INLINE void convolve_any(const struct hf_taps *t, const struct convolve_job *j, int x, int height,

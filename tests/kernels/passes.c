@@ -56,12 +56,17 @@ static float coc_value(struct world *w, int mode, int patch)
     return mode == COC_PATCHES && patch ? 0 : mode == COC_EVERYWHERE && v == 0 ? 1 : v;
 }
 
-// With area kernels, the near and far parts of a quad sum to at most 1.
-static float part_at_most(const struct world *w, int b, int c, int x, int y, float v)
+// With area kernels, the near and far parts of a quad sum to at most 1, a part has a largest CoC, and what has no part has no
+// colour.
+static float of_part(struct world *w, int b, int c, int x, int y, float v)
 {
-    if (b != HF_BUF_COC4 || c != HF_AREA_FAR || is_chapter(w))
+    const int field = b == HF_BUF_COLORFAR4 || (b == HF_BUF_COC4 && c % 2);
+    if (is_chapter(w) || (b != HF_BUF_COC4 && b != HF_BUF_COLORNEAR4 && b != HF_BUF_COLORFAR4))
         return v;
-    return fminf(v, 1 - *world_at(w, ARENA_MADE, HF_BUF_COC4, HF_AREA_NEAR, x, y));
+    if (b == HF_BUF_COC4 && c < HF_AREA_NEAR_MOST)
+        return c == HF_AREA_NEAR ? v : fminf(v, 1 - *world_at(w, ARENA_MADE, HF_BUF_COC4, HF_AREA_NEAR, x, y));
+    const float part = *world_at(w, ARENA_MADE, HF_BUF_COC4, field, x, y);
+    return b == HF_BUF_COC4 ? fmaxf(v, part) : part > 0 ? v : 0;
 }
 
 static void fill_buf(struct world *w, int b, struct hf_rect r)
@@ -73,9 +78,8 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++) {
                 const int patch = pattern >> ((x - r.x0) / size + 3 * ((y - r.y0) / 2) + 5 * (c / 2)) % 32 & 1;
-                world_put(
-                    w, b, c, x, y,
-                    part_at_most(w, b, c, x, y, is_coc(w, b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y)));
+                world_put(w, b, c, x, y,
+                          of_part(w, b, c, x, y, is_coc(w, b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y)));
             }
 }
 
@@ -192,7 +196,8 @@ static void make_scratch(struct world *w)
     const int width = w->r.x1 - w->r.x0, height = w->r.y1 - w->r.y0;
     make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(world_fields(w)->max_x, t->rx) + 8 + 2 * HF_PAD));
     const size_t rows = 2 * (size_t)t->ry + 1, strips = HF_STRIP_PLANES * HF_STRIP * (size_t)height;
-    const size_t gather = strips + (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 3) * 128;
+    const size_t known = HF_ROW_FLOATS * (size_t)(height + 2 * t->ry + 2 * 64);
+    const size_t gather = strips + known + (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 3) * 128;
     const size_t near = 64 * (size_t)(height + 2 * world_fields(w)->max_y), fill = 3 * w->line_floats;
     const size_t floats = gather > near ? gather : near;
     slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);

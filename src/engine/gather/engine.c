@@ -98,8 +98,8 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return (needs && hf_fields(s)->karis) || (needs & HF_NEAR && hf_gather(s)->leaves) ? HF_FIELDS : needs;
 }
 
-// What the kernels need: a strip's sums; terms, pairs and their sums of the convolution for strips of up to 80 columns; and
-// values and partial sums of the near blur for 16.
+// What the kernels need: a strip's sums, in whose place levels note what their rows hold; terms, pairs and their sums of
+// the convolution for strips of up to 80 columns; and values and partial sums of the near blur for 16.
 static size_t work(const struct hf_setup *s, const struct hf_cells *p)
 {
     const size_t height = (size_t)p->height[2] + 2 * (size_t)p->pass[HF_PASS_COMPUTATION].y;

@@ -33,11 +33,13 @@ static void area_largest_row(const struct hf_frame *f, int x0, int n, int y)
         out[x] = HF_AREA_LARGEST;
 }
 
-static void area_lights(const struct hf_frame *f, struct hf_rect r)
+// As far as these taps reach.
+static void area_lights(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t)
 {
-    const struct hf_reach reach = hf_gather_halo(f->s, HF_HALO_TAPS);
     const struct hf_buf *b = &f->buf[HF_BUF_WEIGHT];
-    const int apart = hf_gather(f->s)->lights, x0 = r.x0 - reach.x, n = r.x1 + reach.x - x0;
+    const int apart = hf_gather(f->s)->lights;
+    const struct hf_reach reach = {t->rx + apart, t->ry + apart};
+    const int x0 = r.x0 - reach.x, n = r.x1 + reach.x - x0;
     for (int y = r.y0 - reach.y; y < r.y1 + reach.y && !hf_stopped(f->s->stop); y++)
         area_largest_row(f, x0, n, y);
     for (int y = r.y0 - reach.y + apart; y < r.y1 + reach.y - apart && !hf_stopped(f->s->stop); y++) {

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Computation with several kernels for a field, on vectors: what the kernels are laid over.
+#include "engine/gather/computation_simd.h"
+
+HF_INLINE vf area_reached(const struct hf_levels *l, int i, vf coc)
+{
+    if (i < 0)
+        return vf_zero();
+    if (i == l->count - 1)
+        return vf_set1(1);
+    return coc_saturate(vf_mul(vf_sub(coc, vf_set1(l->level[i + 1].coc)), vf_set1(l->level[i].to_next)));
+}
+
+HF_INLINE vf area_share(const struct hf_levels *l, int i, vf coc)
+{
+    return vf_mul(area_reached(l, i, coc), vf_sub(vf_set1(1), area_reached(l, i - 1, coc)));
+}
+
+HF_INLINE vf area_of_level(const struct hf_levels *l, int i, vf area)
+{
+    if (i < 0 || i == l->count - 1)
+        return vf_set1(i >= 0);
+    return coc_saturate(vf_mul(vf_sub(area, vf_set1(l->level[i + 1].area)), vf_set1(l->level[i].area_to_next)));
+}
+
+HF_INLINE vf area_spread(const struct hf_levels *l, int i, vf coc)
+{
+    const vf own = vf_mul(coc, coc), area = vf_max(own, vf_set1(l->level[l->count - 1].area));
+    const vf share = vf_mul(area_of_level(l, i, own), vf_sub(vf_set1(1), area_of_level(l, i - 1, own)));
+    return vf_mul(share, vf_div(vf_set1(l->level[i].area), area));
+}
+
+HF_INLINE vf area_seen(const struct hf_levels *l, int i, vf coc)
+{
+    const vf least = vf_set1(l->level[l->count - 1].coc);
+    return area_share(l, i, vf_mul(vf_max(coc, least), vf_set1(HF_FAR_WIDER)));
+}
+
+HF_INLINE vf area_left(const struct hf_levels *l, int i, const float *far)
+{
+    const vf times = vf_mul(vf_load(far), vf_set1(l->level[i].half_far)), one = vf_set1(1);
+    const vf most = vf_max(vf_mul(times, times), one), fourth = vf_mul(most, most);
+    return vf_sub(one, vf_div(one, vf_mul(fourth, fourth)));
+}
+
+// Level i of the disoccluded colour leaves strongly blurred far samples to the far levels, in part or wholly
+// (hf_level_left). Can there be such a sample?
+static int area_leaves(const struct hf_setup *s, int i)
+{
+    return hf_gather(s)->leaves && hf_gather_behind(s)->level[i].half_far > 1;
+}
+
+enum area_kind { AREA_NEAR, AREA_FAR };
+
+// Zeros of a row where it lies beyond the frame.
+static void area_clear_beyond(const struct hf_setup *s, float *row, int x0, int x1, int y)
+{
+    const int beyond = y < 0 || y >= s->half_height;
+    for (int x = x0; x < (beyond ? x1 : hf_min(x1, 0)); x++)
+        row[x - x0] = 0;
+    for (int x = hf_max(x0, s->half_width); x < x1; x++)
+        row[x - x0] = 0;
+}
+
+// The least and the largest CoC of some pixels.
+struct area_range {
+    vf least, most;
+};
+
+static const float AREA_NONE = 2;  // more than any CoC
+
+HF_INLINE struct area_range area_range_none(void)
+{
+    return (struct area_range){vf_set1(AREA_NONE), vf_zero()};
+}
+
+// zero: what a CoC of 0 counts as.
+HF_INLINE void area_range_row(struct area_range *range, const float *coc, int n, const float zero)
+{
+    for (int x = 0; x < n; x += VF_N) {
+        const vf v = vf_load(coc + x);
+        range->most = vf_max(v, range->most);
+        range->least = vf_min(vf_select(vf_gt(v, vf_zero()), v, vf_set1(zero)), range->least);
+    }
+}
+
+struct area_span {
+    float least, most;
+};
+
+// Both ends, of all lanes.
+static struct area_span area_range_ends(const struct area_range *range)
+{
+    float a[VF_N], b[VF_N];
+    vf_store(a, range->least);
+    vf_store(b, range->most);
+    struct area_span s = {a[0], b[0]};
+    for (int i = 1; i < VF_N; i++) {
+        s.least = a[i] < s.least ? a[i] : s.least;
+        s.most = b[i] > s.most ? b[i] : s.most;
+    }
+    return s;
+}
+
+static void area_span_join(struct area_span *all, struct area_span s)
+{
+    all->least = s.least < all->least ? s.least : all->least;
+    all->most = s.most > all->most ? s.most : all->most;
+}
+
+// What is known of rows, wherever taps reach: most samples are in two levels of many, so most levels hold little.
+struct area_rows {
+    int y0;                      // row of the first
+    struct convolve_row *level;  // of the level at hand
+    struct area_span *coc;       // of the field's samples: blocks of a row, see convolve_blocks, hold none without CoC
+    struct area_span *seen;      // of what its pixels see
+    float *work;                 // what follows is free
+};
+
+static struct area_rows area_rows_of(const struct hf_frame *f, struct hf_rect r)
+{
+    const int reach = hf_gather_halo(f->s, HF_HALO_TAPS).y, n = r.y1 - r.y0 + 2 * reach;
+    struct area_rows rows = {.y0 = r.y0 - reach, .level = (struct convolve_row *)f->work};
+    rows.coc = (struct area_span *)(rows.level + n);
+    rows.seen = rows.coc + n;
+    rows.work = f->work + HF_ROW_FLOATS * ((n + 1) & ~1);
+    return rows;
+}
+
+// Of a channel of the half-resolution CoC. Returns that of all.
+static struct area_span area_coc_rows(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area,
+                                      int channel)
+{
+    struct area_span all = {AREA_NONE, 0};
+    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++) {
+        struct area_range range = area_range_none();
+        area_range_row(&range, hf_at(&f->buf[HF_BUF_COC4], channel, area.x0, y), area.x1 - area.x0, AREA_NONE);
+        rows->coc[y - rows->y0] = area_range_ends(&range);
+        area_span_join(&all, rows->coc[y - rows->y0]);
+    }
+    return all;
+}
+
+// Can a sample with a CoC between these be in a level?
+HF_INLINE int area_is_in(const struct hf_levels *l, const int kind, int i, struct area_span coc)
+{
+    if (!(coc.most > 0))
+        return 0;
+    if (kind == AREA_NEAR)
+        return hf_level_reached(l, i, coc.most) > 0 && hf_level_reached(l, i - 1, coc.least) < 1;
+    return hf_level_area(l, i, coc.most * coc.most) > 0 && hf_level_area(l, i - 1, coc.least * coc.least) < 1;
+}
+
+// Returns what blocks hold something.
+HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect area, const int kind, int i, int y)
+{
+    const struct hf_setup *s = f->s;
+    const struct hf_levels *l = hf_gather_levels(s, kind == AREA_FAR ? HF_FAR : HF_NEAR);
+    const int x0 = area.x0, karis = hf_fields(s)->karis;
+    const float *w = karis ? hf_at(&f->buf[HF_BUF_WEIGHT], 0, x0, y) : NULL;
+    float *coc[4], *from[4], *to[4], *weight[4];
+    hf_row(&f->buf[HF_BUF_COC4], 4, x0, y, coc);
+    hf_row(&f->buf[kind == AREA_NEAR ? HF_BUF_COLORNEAR4 : HF_BUF_COLORFAR4], s->channels, x0, y, from);
+    hf_row(&f->buf[HF_BUF_LEVEL], s->channels, x0, y, to);
+    hf_row(&f->buf[HF_BUF_LEVEL_WEIGHT], 2, x0, y, weight);
+    uint64_t filled = 0;
+    for (int x = 0; x < area.x1 - x0; x += VF_N) {
+        const vf most = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR_MOST : HF_AREA_FAR_MOST] + x);
+        vf share = kind == AREA_NEAR ? area_share(l, i, most) : area_spread(l, i, most);
+        if (!vm_any(vm_and(vf_gt(share, vf_zero()), vf_gt(most, vf_zero())))) {
+            for (int c = 0; c < s->channels; c++)
+                vf_store(to[c] + x, vf_zero());
+            vf_store(weight[0] + x, vf_zero());
+            if (karis)
+                vf_store(weight[1] + x, vf_zero());
+            continue;
+        }
+        filled |= convolve_blocks(x0 + x, x0 + x + VF_N);
+        const vf part = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR : HF_AREA_FAR] + x);
+        if (karis)
+            vf_store(weight[1] + x, vf_mul(part, share));
+        if (karis)
+            share = vf_mul(share, vf_load(w + x));
+        for (int c = 0; c < s->channels; c++)
+            vf_store(to[c] + x, vf_mul(vf_load(from[c] + x), share));
+        vf_store(weight[0] + x, vf_mul(part, share));
+    }
+    return filled;
+}
+
+static struct hf_rect area_grown(struct hf_rect r, const struct hf_taps *t)
+{
+    return (struct hf_rect){r.x0 - t->rx, r.y0 - t->ry, r.x1 + t->rx, r.y1 + t->ry};
+}
+
+static void area_level_planes(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area,
+                              enum area_kind kind, int i)
+{
+    const struct hf_levels *l = hf_gather_levels(f->s, kind == AREA_FAR ? HF_FAR : HF_NEAR);
+    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++) {
+        const struct area_span coc = rows->coc[y - rows->y0];
+        struct convolve_row *row = &rows->level[y - rows->y0];
+        if (kind == AREA_NEAR)
+            row->filled = area_is_in(l, AREA_NEAR, i, coc) ? area_level_row(f, area, AREA_NEAR, i, y) : 0;
+        else
+            row->filled = area_is_in(l, AREA_FAR, i, coc) ? area_level_row(f, area, AREA_FAR, i, y) : 0;
+        row->wanted = ~(uint64_t)0;
+    }
+}
+
+// The part of r within reach of some blocks: rows y0 to y1 - 1 have them. Whole vectors from its left edge, or up to r's right
+// one.
+static struct hf_rect area_around(struct hf_rect r, struct hf_reach reach, uint64_t blocks, int y0, int y1)
+{
+    int x0 = r.x1, x1 = r.x0;
+    for (int x = (r.x0 - reach.x) & ~15; x < r.x1 + reach.x; x += 16)
+        if (blocks & convolve_blocks(x, x + 16)) {
+            x0 = hf_min(x0, (x - reach.x) & ~15);
+            x1 = x + 16 + reach.x;
+        }
+    x0 = hf_max(x0, r.x0);
+    return (struct hf_rect){x0, hf_max(y0 - reach.y, r.y0), hf_min(x0 + ((x1 - x0 + 15) & ~15), r.x1),
+                            hf_min(y1 + reach.y, r.y1)};
+}
+
+static int area_is_empty(struct hf_rect r)
+{
+    return r.x0 >= r.x1 || r.y0 >= r.y1;
+}
+
+// Of r, what a level's samples reach, or where it is wanted.
+static struct hf_rect area_touched(const struct area_rows *rows, struct hf_rect r, struct hf_reach reach, int wanted)
+{
+    uint64_t blocks = 0;
+    int y0 = r.y1 + reach.y, y1 = r.y0 - reach.y;
+    for (int y = r.y0 - reach.y; y < r.y1 + reach.y; y++) {
+        const struct convolve_row *row = &rows->level[y - rows->y0];
+        const uint64_t own = wanted ? row->wanted : row->filled;
+        blocks |= own;
+        y0 = own ? hf_min(y0, y) : y0;
+        y1 = own ? y + 1 : y1;
+    }
+    return area_around(r, reach, blocks, y0, y1);
+}
+
+// What is not near, less what of far samples is left to the far levels.
+// Returns what blocks hold something.
+HF_INLINE uint64_t area_behind_row(const struct hf_frame *f, const struct hf_rect area, int i, int y, const int karis,
+                                   const int leaves)
+{
+    const struct hf_setup *s = f->s;
+    const struct hf_levels *l = hf_gather_behind(s);
+    const int x0 = area.x0;
+    const float *w = karis ? hf_at(&f->buf[HF_BUF_WEIGHT], 0, x0, y) : NULL;
+    const float *lights = hf_level_limits(s, i) ? hf_at(&f->buf[HF_BUF_WEIGHT], 2, x0, y) : NULL;
+    float *coc[4], *colour[4], *near[4], *far[4], *to[4], *weight[4];
+    hf_row(&f->buf[HF_BUF_COC4], 4, x0, y, coc);
+    hf_row(&f->buf[HF_BUF_COLOR4], s->channels, x0, y, colour);
+    hf_row(&f->buf[HF_BUF_COLORNEAR4], s->channels, x0, y, near);
+    hf_row(&f->buf[HF_BUF_COLORFAR4], s->channels, x0, y, far);
+    hf_row(&f->buf[HF_BUF_LEVEL], s->channels, x0, y, to);
+    hf_row(&f->buf[HF_BUF_LEVEL_WEIGHT], 3, x0, y, weight);
+    uint64_t filled = 0;
+    for (int x = 0; x < area.x1 - x0; x += VF_N) {
+        vf rest = vf_sub(vf_set1(1), vf_load(coc[HF_AREA_NEAR] + x)), left = vf_zero();
+        if (!vm_any(vf_gt(rest, vf_zero()))) {
+            for (int c = 0; c < s->channels; c++)
+                vf_store(to[c] + x, vf_zero());
+            for (int k = 0; k < 3; k++)
+                vf_store(weight[k] + x, vf_zero());
+            continue;
+        }
+        filled |= convolve_blocks(x0 + x, x0 + x + VF_N);
+        if (leaves) {
+            left = area_left(l, i, coc[HF_AREA_FAR_MOST] + x);
+            const vf hidden = vf_mul(left, vf_load(coc[HF_AREA_FAR] + x));
+            rest = vf_sub(rest, hidden);
+            vf_store(weight[2] + x, hidden);
+        }
+        const vm counts = vf_gt(rest, vf_zero());
+        for (int c = 0; c < s->channels; c++) {
+            vf v = vf_sub(vf_load(colour[c] + x), vf_load(near[c] + x));
+            if (leaves)
+                v = vf_sub(v, vf_mul(left, vf_load(far[c] + x)));
+            if (lights)
+                v = vf_mul(v, vf_load(lights + x));
+            vf_store(to[c] + x, vf_keep(counts, karis ? vf_mul(v, vf_load(w + x)) : v));
+        }
+        vf_store(weight[karis] + x, vf_keep(counts, rest));
+        if (karis)
+            vf_store(weight[0] + x, vf_keep(counts, vf_mul(rest, vf_load(w + x))));
+    }
+    for (int k = 0; k < 1 + karis; k++)
+        area_clear_beyond(s, weight[k], x0, area.x1, y);
+    return filled;
+}
+
+static void area_behind_planes(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area, int i)
+{
+    const int karis = hf_fields(f->s)->karis, leaves = area_leaves(f->s, i);
+    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++)
+        rows->level[y - rows->y0].filled = karis    ? area_behind_row(f, area, i, y, 1, leaves)
+                                           : leaves ? area_behind_row(f, area, i, y, 0, 1)
+                                                    : area_behind_row(f, area, i, y, 0, 0);
+}
