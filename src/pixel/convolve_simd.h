@@ -21,34 +21,30 @@ struct convolve_term {
     int32_t offset;
 };
 
-// One row sum from the pairs h (rows of s vectors), added to the output rows above and below. scale: NULL, or that of the
-// one above, which is then complete.
+// A row sum from the pairs h (rows of s vectors).
 HF_INLINE void row_sum(const struct convolve_term *term, const struct convolve_term *end, const int s, const float *h,
-                       float *above, float *below, const float *scale)
+                       vf *sum)
 {
-    vf acc[CONVOLVE_S];
 #pragma GCC unroll 16
     for (int v = 0; v < s; v++)
-        acc[v] = vf_zero();
+        sum[v] = vf_zero();
     for (; term < end; term++) {
         const vf w = vf_set1(term->weight);
         const char *p = (const char *)h + term->offset;
 #pragma GCC unroll 16
         for (int v = 0; v < s; v++)
-            acc[v] = vf_fma(w, vf_load(p + v * (int)sizeof(vf)), acc[v]);
+            sum[v] = vf_fma(w, vf_load(p + v * (int)sizeof(vf)), sum[v]);
     }
-    if (above && scale)
+}
+
+// Add a row sum to an output row. scale: NULL, or that of a row that is then complete.
+HF_INLINE void row_add(float *out, const int s, const vf *sum, const float *scale)
+{
 #pragma GCC unroll 16
-        for (int v = 0; v < s; v++)
-            vf_store(above + v * VF_N, vf_mul(vf_add(vf_load(above + v * VF_N), acc[v]), vf_set1(*scale)));
-    else if (above)
-#pragma GCC unroll 16
-        for (int v = 0; v < s; v++)
-            vf_store(above + v * VF_N, vf_add(vf_load(above + v * VF_N), acc[v]));
-    if (below)
-#pragma GCC unroll 16
-        for (int v = 0; v < s; v++)
-            vf_store(below + v * VF_N, vf_add(vf_load(below + v * VF_N), acc[v]));
+    for (int v = 0; v < s; v++) {
+        const vf all = vf_add(vf_load(out + v * VF_N), sum[v]);
+        vf_store(out + v * VF_N, scale ? vf_mul(all, vf_set1(*scale)) : all);
+    }
 }
 
 // Rows of a frame lie on pages of their own, where no hardware prefetcher follows. Fetching ahead is worth some 4 % of
@@ -64,7 +60,6 @@ HF_INLINE void prefetch_row(const float *p, int floats)
 // Pairs h[j] of an input row (or, without symmetry, its shifted values); of areas their sums from the middle on, too.
 HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, const int s, float *h)
 {
-    const float *pairs = h;
     if (!symmetric) {
         for (int j = -rx; j <= rx; j++, h += s * VF_N)
 #pragma GCC unroll 16
@@ -72,28 +67,25 @@ HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, 
                 vf_store(h + v * VF_N, vf_load(p + v * VF_N + j));
         return;
     }
-#pragma GCC unroll 16
-    for (int v = 0; v < s; v++)
-        vf_store(h + v * VF_N, vf_load(p + v * VF_N));
-    for (int j = 1; j <= rx; j++) {
-        h += s * VF_N;
-#pragma GCC unroll 16
-        for (int v = 0; v < s; v++)
-            vf_store(h + v * VF_N, vf_add(vf_load(p + v * VF_N - j), vf_load(p + v * VF_N + j)));
-    }
-    if (!runs)
-        return;
     vf sum[CONVOLVE_S];
-    h += s * VF_N;
+    float *run = h + (rx + 1) * s * VF_N;
 #pragma GCC unroll 16
-    for (int v = 0; v < s; v++)
-        vf_store(h + v * VF_N, sum[v] = vf_load(pairs + v * VF_N));
+    for (int v = 0; v < s; v++) {
+        vf_store(h + v * VF_N, sum[v] = vf_load(p + v * VF_N));
+        if (runs)
+            vf_store(run + v * VF_N, sum[v]);
+    }
     for (int j = 1; j <= rx; j++) {
         h += s * VF_N;
-        pairs += s * VF_N;
+        run += s * VF_N;
 #pragma GCC unroll 16
-        for (int v = 0; v < s; v++)
-            vf_store(h + v * VF_N, sum[v] = vf_add(sum[v], vf_load(pairs + v * VF_N)));
+        for (int v = 0; v < s; v++) {
+            const vf pair = vf_add(vf_load(p + v * VF_N - j), vf_load(p + v * VF_N + j));
+            vf_store(h + v * VF_N, pair);
+            sum[v] = vf_add(sum[v], pair);
+            if (runs)
+                vf_store(run + v * VF_N, sum[v]);
+        }
     }
 }
 
@@ -127,41 +119,136 @@ HF_INLINE int window_wants(const struct convolve_window *w, int y)
     return !w->row || w->row[y].wanted & w->writes;
 }
 
-// An input row that holds nothing still ends the sum of the output row that it is the last of.
-HF_INLINE void row_end(const struct hf_taps *t, const int s, float *above)
+// The rows of a strip's result.
+struct convolve_out {
+    float *row;
+    ptrdiff_t stride;
+    int height;
+    const struct convolve_window *window;
+};
+
+// Row y; NULL if there is none or nobody wants it.
+HF_INLINE float *out_row(const struct convolve_out *o, int y)
 {
-    for (int v = 0; v < s && t->scale != 1; v++)
-        vf_store(above + v * VF_N, vf_mul(vf_load(above + v * VF_N), vf_set1(t->scale)));
+    return y >= 0 && y < o->height && window_wants(o->window, y) ? o->row + y * o->stride : NULL;
+}
+
+// Row y of the input, whose pairs are in h.
+HF_INLINE void one_row(const struct hf_taps *t, const struct convolve_out *o, int y, const int symmetric, const int s,
+                       const struct convolve_term *terms, const float *h)
+{
+    for (int k = 0; k < t->rows; k++) {
+        float *above = out_row(o, symmetric ? y - k : y - k + t->ry),
+              *below = symmetric && k ? out_row(o, y + k) : NULL;
+        if (!above && !below)
+            continue;
+        vf sum[CONVOLVE_S];
+        row_sum(terms + t->first[k], terms + t->first[k + 1], s, h, sum);
+        if (above)
+            row_add(above, s, sum, k == t->rows - 1 ? &t->scale : NULL);
+        if (below)
+            row_add(below, s, sum, NULL);
+    }
+}
+
+// With 32 registers a strip has room for two input rows, and an output row is read and written once for both.
+enum { CONVOLVE_TWO = VF_N == 16 };
+
+// As row_sum, of two rows: the second's pairs lie `next` bytes after the first's.
+HF_INLINE void row_sums(const struct convolve_term *term, const struct convolve_term *end, const int s, const float *h,
+                        ptrdiff_t next, vf *a, vf *b)
+{
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++)
+        a[v] = b[v] = vf_zero();
+    for (; term < end; term++) {
+        const vf w = vf_set1(term->weight);
+        const char *p = (const char *)h + term->offset, *q = p + next;
+#pragma GCC unroll 16
+        for (int v = 0; v < s; v++) {
+            a[v] = vf_fma(w, vf_load(p + v * (int)sizeof(vf)), a[v]);
+            b[v] = vf_fma(w, vf_load(q + v * (int)sizeof(vf)), b[v]);
+        }
+    }
+}
+
+HF_INLINE void row_add_two(float *out, const int s, const vf *a, const vf *b, const float *scale)
+{
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++) {
+        const vf all = vf_add(vf_add(vf_load(out + v * VF_N), a[v]), b[v]);
+        vf_store(out + v * VF_N, scale ? vf_mul(all, vf_set1(*scale)) : all);
+    }
+}
+
+// Rows y and y + 1, of symmetric taps: row y + k has row sum k of the first and k - 1 of the second, row y + 1 - k the
+// other way around.
+HF_INLINE void two_rows(const struct hf_taps *t, const struct convolve_out *o, int y, const int s,
+                        const struct convolve_term *terms, const float *h)
+{
+    const ptrdiff_t next = (2 * t->rx + 2) * s * (ptrdiff_t)sizeof(vf);
+    vf a_before[CONVOLVE_S], b_before[CONVOLVE_S];
+#pragma GCC unroll 16
+    for (int v = 0; v < s; v++)
+        a_before[v] = b_before[v] = vf_zero();
+    for (int k = 0; k <= t->ry; k++) {
+        float *above = out_row(o, y + 1 - k), *below = out_row(o, y + k);
+        if (!above && !below && !out_row(o, y - k) && !out_row(o, y + 1 + k))
+            continue;
+        vf a[CONVOLVE_S], b[CONVOLVE_S];
+        row_sums(terms + t->first[k], terms + t->first[k + 1], s, h, next, a, b);
+        if (k && below)
+            row_add_two(below, s, a, b_before, NULL);
+        if (k && above)
+            row_add_two(above, s, a_before, b, k == t->ry ? &t->scale : NULL);
+#pragma GCC unroll 16
+        for (int v = 0; v < s; v++) {
+            a_before[v] = a[v];
+            b_before[v] = b[v];
+        }
+    }
+    float *first = out_row(o, y - t->ry), *last = out_row(o, y + 1 + t->ry);
+    if (first)
+        row_add(first, s, a_before, &t->scale);
+    if (last)
+        row_add(last, s, b_before, NULL);
+}
+
+HF_INLINE void out_begin(const struct convolve_out *o, int y, const int s)
+{
+    if (y < o->height)
+#pragma GCC unroll 16
+        for (int v = 0; v < s; v++)
+            vf_store(o->row + y * o->stride + v * VF_N, vf_zero());
 }
 
 // s vectors of columns. Each input row is spread over the output rows it reaches: those are sums that grow from top to
 // bottom, and stay in the first-level cache while they do. Adding nothing but 0 changes no bit.
-HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_t in_stride, float *out,
-                              ptrdiff_t out_stride, int height, const int symmetric, const int s,
-                              const struct convolve_window *w, const struct convolve_term *terms, float *h,
-                              atomic_int *stop)
+HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_t in_stride,
+                              const struct convolve_out *o, const int symmetric, const int s,
+                              const struct convolve_term *terms, float *h, atomic_int *stop)
 {
-    const int ry = t->ry, step = s * VF_N;
-    for (int y = -ry; y < height + ry && !hf_stopped(stop); y++) {
-        if (y + ry < height)  // reached for the first time
-#pragma GCC unroll 16
-            for (int v = 0; v < s; v++)
-                vf_store(out + (y + ry) * out_stride + v * VF_N, vf_zero());
-        if (!window_reads(w, y)) {
-            if (y >= ry)
-                row_end(t, s, out + (y - ry) * out_stride);
+    const int ry = t->ry, step = s * VF_N, end = o->height + ry;
+    for (int y = -ry; y < end && !hf_stopped(stop); y++) {
+        const float *p = in + y * in_stride;
+        out_begin(o, y + ry, s);
+        if (!window_reads(o->window, y)) {  // it still ends the sum of the output row that it is the last of
+            for (int v = 0; v < s && y >= ry; v++) {
+                float *out = o->row + (y - ry) * o->stride + v * VF_N;
+                vf_store(out, vf_mul(vf_load(out), vf_set1(t->scale)));
+            }
             continue;
         }
-        prefetch_row(in + (y + CONVOLVE_AHEAD) * in_stride - t->rx, step + 2 * t->rx);
-        row_pairs(in + y * in_stride, t->rx, symmetric, t->runs, s, h);
-        for (int k = 0; k < t->rows; k++) {
-            const int up = symmetric ? y - k : y - k + ry, down = y + k;
-            float *above = up >= 0 && up < height && window_wants(w, up) ? out + up * out_stride : NULL;
-            float *below =
-                symmetric && k && down >= 0 && down < height && window_wants(w, down) ? out + down * out_stride : NULL;
-            if (above || below)
-                row_sum(terms + t->first[k], terms + t->first[k + 1], s, h, above, below,
-                        k == t->rows - 1 && t->scale != 1 ? &t->scale : NULL);
+        prefetch_row(p + CONVOLVE_AHEAD * in_stride - t->rx, step + 2 * t->rx);
+        row_pairs(p, t->rx, symmetric, t->runs, s, h);
+        if (CONVOLVE_TWO && symmetric && y + 1 < end && window_reads(o->window, y + 1)) {
+            y++;
+            out_begin(o, y + ry, s);
+            prefetch_row(p + (CONVOLVE_AHEAD + 1) * in_stride - t->rx, step + 2 * t->rx);
+            row_pairs(p + in_stride, t->rx, symmetric, t->runs, s, h + (2 * t->rx + 2) * step);
+            two_rows(t, o, y - 1, s, terms, h);
+        } else {
+            one_row(t, o, y, symmetric, s, terms, h);
         }
     }
 }
@@ -296,10 +383,10 @@ HF_INLINE void convolve_planes(const struct hf_taps *t, const struct convolve_jo
     const int left = j->x0 + x, right = left + s * VF_N;
     const struct convolve_window w = {j->row ? j->row + y0 : NULL, convolve_blocks(left - t->rx, right + t->rx),
                                       convolve_blocks(left, right)};
-    for (int i = 0; i < j->planes && y0 < y1; i++)
-        convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i],
-                       job_out(j, i, x, x) + y0 * j->out_stride[i], j->out_stride[i], y1 - y0, symmetric, s, &w, terms,
-                       h, j->stop);
+    for (int i = 0; i < j->planes && y0 < y1; i++) {
+        const struct convolve_out o = {job_out(j, i, x, x) + y0 * j->out_stride[i], j->out_stride[i], y1 - y0, &w};
+        convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i], &o, symmetric, s, terms, h, j->stop);
+    }
 }
 
 HF_INLINE void convolve_any(const struct hf_taps *t, const struct convolve_job *j, int x, int height,

@@ -197,7 +197,7 @@ static void make_scratch(struct world *w)
     make_lines(w, HF_LINES, (size_t)(width + 4 * hf_max(world_fields(w)->max_x, t->rx) + 8 + 2 * HF_PAD));
     const size_t rows = 2 * (size_t)t->ry + 1, strips = HF_STRIP_PLANES * HF_STRIP * (size_t)height;
     const size_t known = HF_ROW_FLOATS * (size_t)(height + 2 * t->ry + 2 * 64);
-    const size_t gather = strips + known + (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 3) * 128;
+    const size_t gather = strips + known + (rows + 1) * rows * 128 + (2 * (size_t)t->rx + 3) * 256;
     const size_t near = 64 * (size_t)(height + 2 * world_fields(w)->max_y), fill = 3 * w->line_floats;
     const size_t floats = gather > near ? gather : near;
     slot_use(w, SLOT_WORK, (floats > fill ? floats : fill) * sizeof(float), 0xff);

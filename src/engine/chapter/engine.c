@@ -69,12 +69,12 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
     return needs && hf_fields(s)->karis ? HF_FIELDS : needs;
 }
 
-// What the kernels need: terms, pairs and their sums of the convolution for strips of up to 80 columns; values and partial
-// sums of the near blur for 16; and three rows for the mean fill.
+// What the kernels need: terms, pairs and their sums of the convolution for two rows of strips of up to 80 columns;
+// values and partial sums of the near blur for 16; and three rows for the mean fill.
 static size_t work(const struct hf_setup *s, const struct hf_cells *p)
 {
     const size_t rows = 2 * (size_t)taps_reach(s).y + 1, columns = 2 * (size_t)taps_reach(s).x + 2;
-    const size_t sums = 2 * rows * columns + 16 + columns * 80;
+    const size_t sums = 2 * rows * columns + 16 + columns * 160;
     const size_t near = 2 * ((size_t)p->height[2] + 2 * (size_t)p->buf[HF_BUF_BLUR_X].y) * 16;
     const size_t most = sums > near ? sums : near, fill = 3 * p->line_floats;
     return most > fill ? most : fill;

@@ -99,12 +99,12 @@ static unsigned reads(const struct hf_setup *s, unsigned needs)
 }
 
 // What the kernels need: a strip's sums, in whose place levels note what their rows hold; terms, pairs and their sums of
-// the convolution for strips of up to 80 columns; and values and partial sums of the near blur for 16.
+// the convolution for two rows of strips of up to 80 columns; and values and partial sums of the near blur for 16.
 static size_t work(const struct hf_setup *s, const struct hf_cells *p)
 {
     const size_t height = (size_t)p->height[2] + 2 * (size_t)p->pass[HF_PASS_COMPUTATION].y;
     const size_t rows = 2 * (size_t)taps_reach(s).y + 1, columns = 2 * (size_t)taps_reach(s).x + 2;
-    const size_t sums = height * HF_STRIP * HF_STRIP_PLANES + 2 * rows * columns + 16 + columns * 80;
+    const size_t sums = height * HF_STRIP * HF_STRIP_PLANES + 2 * rows * columns + 16 + columns * 160;
     const size_t near = 2 * ((size_t)p->height[2] + 2 * (size_t)p->buf[HF_BUF_BLUR_X].y) * 16;
     return sums > near ? sums : near;
 }
