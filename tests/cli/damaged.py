@@ -164,6 +164,11 @@ def cases():
     yield 'string-empty', with_header(comments=('string', b''))
     yield 'chromaticities', with_header(chromaticities=('chromaticities', floats(1, 2)))
     yield 'keycode', with_header(keyCode=('keycode', ints(1)))
+    # OpenEXRCore, which reads other compressions than none, loses its place in the header behind such attributes.
+    yield 'preview-rle', with_header(compression=b'\1', preview=('preview', ints(2, 1) + bytes(82)))
+    yield 'chromaticities-rle', with_header(compression=b'\1', chromaticities=('chromaticities', floats(1, 2)))
+    yield 'misfits-rle', with_header(compression=b'\1', **{'m%03d' % i: (kind, bytes(9)) for i, kind in enumerate(
+        ['box2i', 'double', 'float', 'int', 'm44f', 'preview', 'rational', 'stringvector', 'timecode', 'v3d'] * 99)})
     yield 'attributes-many', with_header(**{'a%05d' % i: ('int', ints(i)) for i in range(20000)})
     nan, inf = float('nan'), float('inf')
     for v in (nan, inf, -inf, 0, -1, 1e-45, 3e38):

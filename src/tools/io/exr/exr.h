@@ -74,12 +74,22 @@ struct hf_exr_fetched {
     } * range;
 };
 
+// Attributes whose size is not that of their type, sorted: from the name to the end of the value. Core does not see them,
+// and written files do not have them, because other readers refuse the file or lose their place in it.
+struct hf_exr_misfits {
+    size_t count, room;
+    struct hf_exr_misfit {
+        uint64_t from, type_at, to;
+    } * list;
+};
+
 struct hf_exr {
     const char *path;  // not owned
     const struct hf_exr_codec *dwa;
     int fd;
     const uint8_t *memory;  // the whole file; NULL: fd is read. Not owned
     struct hf_exr_fetched fetched;
+    struct hf_exr_misfits misfits;
     uint64_t size;
     uint64_t header_size;
     bool multipart;
@@ -103,6 +113,16 @@ const char *hf_exr_said(exr_result_t code);
 int hf_exr_fail(const struct hf_exr *e, exr_result_t code, struct hf_io_error *err);
 // Prepare a Core context with our memory and message functions; user_data goes to the functions that read and write.
 void hf_exr_context_init(void *user_data, exr_context_initializer_t *init);
+
+// header.c: look at the header before Core does. Sorting channels and looking for layers compares each channel with all
+// others, in Core too, so a file with too many is refused. Note the misfits. Any other fault is left to Core.
+int hf_exr_survey(struct hf_exr *e, struct hf_io_error *err);
+// Find the end of the header and each part's chunk table.
+int hf_exr_scan_header(struct hf_exr *e, struct hf_io_error *err);
+// Give misfits in bytes read at offset a type that Core does not know, so that it passes over them by their size.
+void hf_exr_hide_misfits(const struct hf_exr *e, uint8_t *data, size_t size, uint64_t offset);
+// Take misfits out of a copy of the header; returns its new size.
+size_t hf_exr_drop_misfits(const struct hf_exr *e, uint8_t *header, size_t size);
 
 bool hf_exr_is_deep(const struct hf_exr_part *part);
 bool hf_exr_is_dwa(exr_compression_t compression);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opens an EXR file: Core parses the header, and this file notes where in the file things are.
+// Opens an EXR file: Core parses the header, and header.c notes where in the file things are.
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -56,7 +56,10 @@ static int64_t core_read(exr_const_context_t core, void *user, void *data, uint6
         return 0;
     if (size > e->size - offset)
         size = e->size - offset;
-    return hf_exr_read_at(e, data, size, offset) ? -1 : (int64_t)size;
+    if (hf_exr_read_at(e, data, size, offset))
+        return -1;
+    hf_exr_hide_misfits(e, data, size, offset);
+    return (int64_t)size;
 }
 
 static int64_t core_size(exr_const_context_t core, void *user)
@@ -119,182 +122,6 @@ int hf_exr_fail(const struct hf_exr *e, exr_result_t code, struct hf_io_error *e
     if (code == EXR_ERR_OUT_OF_MEMORY)
         code = EXR_ERR_CORRUPT_CHUNK;
     return hf_io_fail(err, "%s: truncated or corrupt: %s", e->path, hf_exr_said(code));
-}
-
-// A cursor over the header bytes, for what Core does not report: where things are.
-struct cursor {
-    const struct hf_exr *e;
-    uint64_t at;     // next byte
-    uint64_t begin;  // what buf holds
-    size_t held;
-    uint8_t buf[4096];
-};
-
-// The next byte, or -1 at the end of the file.
-static int next_byte(struct cursor *c)
-{
-    if (c->at >= c->e->size)
-        return -1;
-    if (c->at < c->begin || c->at >= c->begin + c->held) {
-        const uint64_t left = c->e->size - c->at;
-        c->begin = c->at;
-        c->held = left < sizeof(c->buf) ? (size_t)left : sizeof(c->buf);
-        if (hf_exr_read_at(c->e, c->buf, c->held, c->begin))
-            return -1;
-    }
-    return c->buf[c->at++ - c->begin];
-}
-
-// A zero-terminated name of up to 255 bytes. Its length, or -1.
-static int next_name(struct cursor *c, char name[256])
-{
-    for (int n = 0; n < 256; n++) {
-        const int b = next_byte(c);
-        if (b < 0)
-            return -1;
-        name[n] = (char)b;
-        if (!b)
-            return n;
-    }
-    return -1;
-}
-
-static int64_t next_int(struct cursor *c)
-{
-    uint32_t v = 0;
-    for (int i = 0; i < 4; i++) {
-        const int b = next_byte(c);
-        if (b < 0)
-            return -1;
-        v |= (uint32_t)b << (8 * i);
-    }
-    return v;
-}
-
-// The attributes that every part needs, tiles apart. Core accepts any type and size for these, and accepts missing or
-// repeated ones; other readers do not, and written files take them from here.
-static const struct {
-    const char *name, *type;
-    int64_t size;  // -1: any
-} needed[] = {
-    {"channels", "chlist", -1},       {"compression", "compression", 1}, {"dataWindow", "box2i", 16},
-    {"displayWindow", "box2i", 16},   {"lineOrder", "lineOrder", 1},     {"pixelAspectRatio", "float", 4},
-    {"screenWindowCenter", "v2f", 8}, {"screenWindowWidth", "float", 4}, {"tiles", "tiledesc", 9},
-};
-enum { NEEDED = sizeof(needed) / sizeof(needed[0]), NEEDED_BITS = (1 << (NEEDED - 1)) - 1 };
-
-// Note which of these an attribute is. False if its type or size is wrong.
-static bool right_type(const char *name, const char *type, int64_t size, unsigned *seen)
-{
-    for (int i = 0; i < NEEDED; i++) {
-        if (strcmp(name, needed[i].name))
-            continue;
-        if (strcmp(type, needed[i].type) || (needed[i].size >= 0 && size != needed[i].size) || (*seen & 1u << i))
-            return false;
-        *seen |= 1u << i;
-    }
-    return true;
-}
-
-// Count the channels that a list names, up to its end or to where it breaks off.
-static int count_channels(struct cursor *c, uint64_t end)
-{
-    char name[256];
-    int n = 0;
-    for (; c->at < end && next_name(c, name) > 0; n++)
-        c->at += 16;
-    return n;
-}
-
-// Scan one part's attributes, including the zero byte behind them.
-static int scan_part(struct cursor *c, struct hf_exr_part *part)
-{
-    unsigned seen = 0;
-    for (;;) {
-        char name[256], type[256];
-        const int length = next_name(c, name);
-        if (length <= 0)
-            return length || (seen & NEEDED_BITS) != NEEDED_BITS ? -1 : 0;
-        if (next_name(c, type) < 0)
-            return -1;
-        const int64_t size = next_int(c);
-        if (size < 0 || (uint64_t)size > c->e->size - c->at || !right_type(name, type, size, &seen))
-            return -1;
-        const uint64_t at = c->at;
-        const int last = part->storage == EXR_STORAGE_SCANLINE ? EXR_LINEORDER_DECREASING_Y : EXR_LINEORDER_RANDOM_Y;
-        // Core reads the channel list up to its terminating zero, whatever size the attribute gives. Other readers
-        // trust the size, so the two must agree.
-        if (!strcmp(name, "channels") && (count_channels(c, at + (uint64_t)size) < 1 || c->at != at + (uint64_t)size))
-            return -1;
-        if (!strcmp(name, "compression"))
-            part->compression_at = at;
-        if (!strcmp(name, "dataWindow"))
-            part->window_at = at;
-        if (!strcmp(name, "lineOrder") && next_byte(c) > last)  // Core reads an invalid line order as increasing
-            return -1;
-        if (!strcmp(name, "chunkCount") && !strcmp(type, "int") && size == 4) {
-            part->chunk_count_at = at;
-            if (next_int(c) != part->chunk_count)
-                return -1;
-        }
-        c->at = at + (uint64_t)size;
-    }
-}
-
-// Find the end of the header and each part's chunk table.
-static int scan_header(struct hf_exr *e, struct hf_io_error *err)
-{
-    struct cursor c = {.e = e, .at = 4};
-    const int64_t version = next_int(&c);
-    bool ok = version >= 0;
-    e->multipart = ok && (version & 0x1000);
-    for (int p = 0; p < e->part_count && ok; p++)
-        ok = scan_part(&c, &e->parts[p]) == 0 && e->parts[p].compression_at;
-    if (ok && e->multipart)
-        ok = next_byte(&c) == 0;
-    if (!ok)
-        return hf_io_fail(err, "%s: truncated or corrupt: the header does not end, or an attribute is missing or wrong",
-                          e->path);
-    e->header_size = c.at;
-    uint64_t at = c.at;
-    for (int p = 0; p < e->part_count; p++) {
-        e->parts[p].table = at;
-        at += 8 * (uint64_t)e->parts[p].chunk_count;
-        if (at > e->size)
-            return hf_io_fail(err, "%s: truncated or corrupt: %llu bytes long, its chunk tables alone need %llu",
-                              e->path, (unsigned long long)e->size, (unsigned long long)at);
-    }
-    return 0;
-}
-
-// Sorting channels and looking for layers compares each channel with all others, in Core too. So a file with too many
-// is refused before Core sees them. Any other fault is left to Core.
-static int limit_channels(const struct hf_exr *e, struct hf_io_error *err)
-{
-    struct cursor c = {.e = e, .at = 4};
-    const int64_t version = next_int(&c);
-    int count = 0, ends = 0;
-    while (version >= 0) {
-        char name[256], type[256];
-        const int length = next_name(&c, name);
-        ends = length == 0 ? ends + 1 : 0;
-        if (length < 0 || ends > 1 || (ends == 1 && !(version & 0x1000)))
-            break;
-        if (ends)
-            continue;
-        if (next_name(&c, type) < 0)
-            break;
-        const int64_t size = next_int(&c);
-        if (size < 0 || (uint64_t)size > e->size - c.at)
-            break;
-        const uint64_t end = c.at + (uint64_t)size;
-        count += strcmp(name, "channels") ? 0 : count_channels(&c, end);
-        if (count > HF_EXR_MOST_CHANNELS)
-            return hf_io_fail(err, "%s: has %d channels, more than the %d that can be read", e->path, count,
-                              HF_EXR_MOST_CHANNELS);
-        c.at = end;
-    }
-    return 0;
 }
 
 static const char *string_attribute(const struct hf_exr *e, int part, const char *name)
@@ -384,7 +211,7 @@ static int open_core(struct hf_exr **out, struct hf_exr *e, struct hf_io_error *
 {
     exr_context_initializer_t init;
     exr_result_t rv = EXR_ERR_SUCCESS;
-    if (limit_channels(e, err))
+    if (hf_exr_survey(e, err))
         goto error;
     hf_exr_context_init(e, &init);
     init.read_fn = core_read;
@@ -407,7 +234,7 @@ static int open_core(struct hf_exr **out, struct hf_exr *e, struct hf_io_error *
     for (int p = 0; p < e->part_count; p++)
         if (load_part(e, p, err))
             goto error;
-    if (scan_header(e, err))
+    if (hf_exr_scan_header(e, err))
         goto error;
     *out = e;
     return 0;
@@ -460,6 +287,7 @@ void hf_exr_close(struct hf_exr *e)
     }
     free(e->fetched.bytes);
     free(e->fetched.range);
+    free(e->misfits.list);
     free(e->parts);
     if (e->fd >= 0)
         close(e->fd);

@@ -110,7 +110,8 @@ static int list_added(const struct hf_exr *e, uint8_t **header, size_t *size, st
     return 0;
 }
 
-// The source's header, with the texts, and with one byte and one number per part changed where the compression changes.
+// The source's header without misfits, with the texts, and with one byte and one number per part changed where the
+// compression changes.
 static int make_header(struct hf_exr_made *m, const struct hf_exr_job *job, struct hf_io_error *err)
 {
     const struct hf_exr *e = m->e;
@@ -132,8 +133,10 @@ static int make_header(struct hf_exr_made *m, const struct hf_exr_job *job, stru
         if (part->grown)
             memcpy(header + part->window_at, &part->window, sizeof(part->window));
     }
-    if (!status)
+    if (!status) {
+        size = hf_exr_drop_misfits(e, header, size);
         status = list_added(e, &header, &size, err);
+    }
     if (!status && job->text_count) {
         uint8_t *stamped = hf_exr_stamp(header, &size, job->texts, job->text_count);
         status = stamped ? 0 : hf_io_fail(err, "%s: out of memory", e->path);
@@ -517,6 +520,10 @@ int hf_exr_encode_file(struct hf_exr_made **out, struct hf_exr *e, const struct 
         hf_exr_free_file(m);
         return -1;
     }
+    if (e->misfits.count && !written->note[0])
+        snprintf(written->note, sizeof(written->note),
+                 "%s: %zu attribute%s left out, of another size than the type has", e->path, e->misfits.count,
+                 e->misfits.count > 1 ? "s are" : " is");
     fill_tables(m);
     *out = m;
     return 0;
