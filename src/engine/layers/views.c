@@ -416,11 +416,17 @@ static void make_run(const struct block *b, int tx, int ty, int n)
 
 // ---- light ----
 
+// Views that meet less than this part of the light that a pixel has tell the less of it, the less they meet: at the rim of
+// a disc they may miss its highlight, and a sample beside that with hardly a highlight must not speak for it.
+#define MET (1.0f / 64)
+
 // Add shares of one radius to a block's light, as far as views see them.
 static void put_light(struct hf_cell *c, const struct hf_shine *shine, int slice, float amount)
 {
     const struct block *b = (const struct block *)(const void *)c;
     const struct plane *p = &b->plane[slice];
+    // Light is that of nine pixels in all views, see soften().
+    const float all = 9 * (float)c->l->set.views * amount;
     for (int y = 0; p->lit && y < c->rows * TILE; y++)
         for (int tx = 0; tx < c->columns; tx++) {
             if (!*hf_layers_map_at(&shine->shone, tx, y / TILE))
@@ -429,10 +435,14 @@ static void put_light(struct hf_cell *c, const struct hf_shine *shine, int slice
             const float *light = b->light[0] + (size_t)p->number * PIXELS + at,
                         *seen = b->light[1] + (size_t)p->number * PIXELS + at;
             for (int x = 0; x < TILE; x++) {
-                const float part = light[x] > 0 ? seen[x] / light[x] * amount : 0;
+                const float *in = shine->sum.at + y * shine->sum.row + tx * TILE + x;
+                float met = 0;
                 for (int i = 0; i < LIT; i++)
-                    b->shone[i][at + x] +=
-                        part * shine->sum.at[y * shine->sum.row + i * shine->sum.channel + tx * TILE + x];
+                    met += in[i * shine->sum.channel] * LIGHT;
+                met = hf_larger(light[x], MET * all * met);
+                const float part = light[x] > 0 ? seen[x] / met * amount : 0;
+                for (int i = 0; i < LIT; i++)
+                    b->shone[i][at + x] += part * in[i * shine->sum.channel];
             }
         }
 }
