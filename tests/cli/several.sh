@@ -61,6 +61,10 @@ green = struct.unpack('<2560f', read('a.exr')['G'])
 raise SystemExit(not max(green) > .3)
 PYTHON
 result "a lens sees what the bar hides" $?
+good wall.exr --over bar.exr -o s.exr $look --engine scatter
+good bar.exr --over wall.exr -o c.exr $look --engine scatter
+same s.exr c.exr R G B A
+result "nor with the other engine that takes several" $?
 good opaque.exr --over bar.exr -o c.exr $look
 same a.exr c.exr R G B
 result "a picture without alpha is opaque" $?
