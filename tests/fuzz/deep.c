@@ -68,7 +68,7 @@ static struct hf_params any_look(struct bytes *b)
     p.range.distance = 0.5f;
     p.max_radius = (float)(take_byte(b) % 128) / 8;
     p.layers.quality = (enum hf_layers_quality)(take_byte(b) % 4);
-    p.layers.guessed = flags >> 6 & 1;
+    p.layers.guessed = p.engine == HF_ENGINE_LAYERS && flags >> 6 & 1;
     return p;
 }
 
