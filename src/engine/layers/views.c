@@ -194,7 +194,7 @@ static void take_row(void *cookie, const float *in, ptrdiff_t channel, int x, in
     const int from = x > left ? x : left, to = x + n < right ? x + n : right;
     if (from >= to)
         return;
-    float *out = p->at + y * p->row + (from << p->level);
+    float *out = p->at + y * p->row + from * (1 << p->level);
     in += from - x;
     p->lit |= t->light;
     for (int c = 0; c < (t->light ? 3 : t->channels); c++)
