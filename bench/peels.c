@@ -180,6 +180,7 @@ static void json(FILE *out, const void *what)
     const struct bench_peels *t = what;
     struct tool_json j;
     bench_json_begin(&j, out, "truth", t->args);
+    tool_json_text(&j, "engine", hf_engine_name(engine_of(t->args)));
     tool_json_count(&j, "threads", t->threads);
     tool_json_open(&j, "results", '[');
     for (int i = 0; i < t->count; i++)

@@ -52,8 +52,10 @@ static struct desk desk_of(const struct work *w, int worker)
 
 static int compare(const struct deep_sample *x, const struct deep_sample *y)
 {
-    const float a[] = {x->near, -x->s.alpha, x->s.colour[0], x->s.colour[1], x->s.colour[2]},
-                b[] = {y->near, -y->s.alpha, y->s.colour[0], y->s.colour[1], y->s.colour[2]};
+    const float a[] = {-x->s.alpha, x->s.colour[0], x->s.colour[1], x->s.colour[2]},
+                b[] = {-y->s.alpha, y->s.colour[0], y->s.colour[1], y->s.colour[2]};
+    if (x->near != y->near)
+        return x->near < y->near ? -1 : 1;
     for (size_t i = 0; i < sizeof a / sizeof *a; i++)
         if (a[i] != b[i])
             return a[i] < b[i] ? -1 : 1;
@@ -69,7 +71,7 @@ static int by_depth(const void *a, const void *b)
 static void sort(struct deep_sample *s, size_t n)
 {
     size_t sorted = 1;
-    while (sorted < n && (s[sorted - 1].near < s[sorted].near || compare(&s[sorted - 1], &s[sorted]) <= 0))
+    while (sorted < n && compare(&s[sorted - 1], &s[sorted]) <= 0)
         sorted++;
     if (sorted < n && n > FEW) {
         qsort(s, n, sizeof *s, by_depth);

@@ -120,6 +120,8 @@ struct area_rows {
 static struct area_rows area_rows_of(const struct hf_frame *f, struct hf_rect r)
 {
     const int reach = hf_gather_halo(f->s, HF_HALO_TAPS).y, n = r.y1 - r.y0 + 2 * reach;
+    _Static_assert(sizeof(struct convolve_row) + 2 * sizeof(struct area_span) <= HF_ROW_FLOATS * sizeof(float),
+                   "a row");
     struct area_rows rows = {.y0 = r.y0 - reach, .level = (struct convolve_row *)f->work};
     rows.coc = (struct area_span *)(rows.level + n);
     rows.seen = rows.coc + n;
@@ -151,7 +153,7 @@ HF_INLINE int area_is_in(const struct hf_levels *l, const int kind, int i, struc
     return hf_level_area(l, i, coc.most * coc.most) > 0 && hf_level_area(l, i - 1, coc.least * coc.least) < 1;
 }
 
-// Returns what blocks hold something.
+// One row of a level's planes. Returns which blocks of it hold something.
 HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect area, const int kind, int i, int y)
 {
     const struct hf_setup *s = f->s;
@@ -177,10 +179,10 @@ HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect
         }
         filled |= convolve_blocks(x0 + x, x0 + x + VF_N);
         const vf part = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR : HF_AREA_FAR] + x);
-        if (karis)
+        if (karis) {
             vf_store(weight[1] + x, vf_mul(part, share));
-        if (karis)
             share = vf_mul(share, vf_load(w + x));
+        }
         for (int c = 0; c < s->channels; c++)
             vf_store(to[c] + x, vf_mul(vf_load(from[c] + x), share));
         vf_store(weight[0] + x, vf_mul(part, share));
@@ -243,8 +245,7 @@ static struct hf_rect area_touched(const struct area_rows *rows, struct hf_rect 
     return area_around(r, reach, blocks, y0, y1);
 }
 
-// What is not near, less what of far samples is left to the far levels.
-// Returns what blocks hold something.
+// What is not near, less what of far samples is left to the far levels. Returns which blocks of the row hold something.
 HF_INLINE uint64_t area_behind_row(const struct hf_frame *f, const struct hf_rect area, int i, int y, const int karis,
                                    const int leaves)
 {

@@ -123,7 +123,8 @@ static int make_points(struct hf_layers *l, const struct hf_image *picture, cons
     return err ? err : hf_stopped(l->stop) ? HF_ERR_CANCELLED : HF_OK;
 }
 
-// How far out a point lies along a row or a column, in radii; at least 1.
+// How far out a point lies along a row or a column, in radii; at least 1. Not by fmax: gcc 12 for aarch64 stops with an
+// internal error where it vectorizes two of them as one reduction.
 static double farthest_point(const struct hf_layers *l)
 {
     double most = 1;

@@ -44,12 +44,6 @@ static float cover(const struct hf_scatter *t, const struct hf_sides *visible, i
     return sum;
 }
 
-// A colour, which the division by a small weight may make infinite.
-static float within(float v)
-{
-    return v < -FLT_MAX ? -FLT_MAX : v < FLT_MAX ? v : FLT_MAX;
-}
-
 // A whole number of the parts that exact sums can hold.
 static float whole_share(float v)
 {
@@ -71,11 +65,10 @@ void hf_scatter_know(const struct hf_frame *f, int x0, int y, int n, const struc
         if (!(to.share[x] > 0))
             continue;
         to.radius[x] = r;
-        // A peel's colour in a mixed pixel holds what is visible beside the edge, as layers/known.c says.
         const float back = t->given->edges ? 0 : share_of(visible, 1, x);
-        const float same = back > 0 ? back * hf_saturate(2 - 2 * fabsf(visible->radius[1][x] - r)) : 0;
+        const float same = back > 0 ? hf_known_beside(back, visible->radius[1][x], r) : 0;
         for (int c = 0; c < f->s->channels; c++) {
-            const float v = within(known->colour[c][at] / all);
+            const float v = hf_known_within(known->colour[c][at] / all, FLT_MAX);
             to.colour[c][x] = same > 0 ? hf_lerp(v, visible->colour[1][c][x], same) : v;
         }
     }
@@ -92,8 +85,8 @@ void hf_scatter_know_edges(const struct hf_frame *f, int x0, int y, int n, const
         for (int c = 0; c < f->s->channels; c++) {
             float *colour[2] = {&row->colour[0][c][x], &row->colour[1][c][x]};
             const float all = row->share[x] > 0 ? hf_lerp(*colour[0], *colour[1], row->share[x]) : *colour[0];
-            *colour[0] = within(known->front.colour[c][at] / front);
-            *colour[1] = within((all - known->front.colour[c][at]) / share);
+            *colour[0] = hf_known_within(known->front.colour[c][at] / front, FLT_MAX);
+            *colour[1] = hf_known_within((all - known->front.colour[c][at]) / share, FLT_MAX);
         }
         row->share[x] = share;
         row->radius[0][x] = known->front.radius[at];

@@ -35,8 +35,8 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
 }
 
 // Draw the sources of full-resolution rows y0 to y1, four columns at a time: all these rows write to nearly the same
-// cache lines, which are fetched from the second level and written back only once. Then draw what lies behind the pixels' first
-// samples.
+// cache lines, which are fetched from the second level and written back only once. Then draw what lies behind the first
+// samples of pixels.
 static void list_full(struct walk *w, int y0, int y1)
 {
     struct hf_source_row row[TOGETHER];
@@ -51,14 +51,14 @@ static void list_full(struct walk *w, int y0, int y1)
         for (int i = 0; i < y1 - y0; i++)
             hf_list_sources(w, &row[i], x, hf_min(x + 4, x1 - x0));
     hf_flush_sources(w);
-    for (int i = 0, n = x1 - x0, sets = hf_scatter_sets(w->field); i < sets * (y1 - y0); i++) {
-        const int y = y0 + i / sets;
-        struct hf_backs b;
-        if (!hf_scatter_backs(w->f, i % sets, x0, y, &b))
-            continue;
-        for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n))
-            hf_add_back(w, &b, x, x0 + x, y, 1);
-    }
+    for (int y = y0, n = x1 - x0; y < y1; y++)
+        for (int i = 0; i < hf_scatter_sets(w->field); i++) {
+            struct hf_backs b;
+            if (!hf_scatter_backs(w->f, i, x0, y, &b))
+                continue;
+            for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n))
+                hf_add_back(w, &b, x, x0 + x, y, 1);
+        }
     hf_flush_sources(w);
 }
 

@@ -8,6 +8,8 @@
 #include "pixel/pass_c.h"
 #include "engine/scatter/kernels.h"
 
+struct hf_backs;
+
 enum { TOGETHER = 4 };  // rows of full-resolution sources drawn together
 
 // A slice of radii: sources from begin[1] to end[0] belong to it fully, those from begin[0] and up to end[1] in part.
@@ -89,8 +91,7 @@ const float *hf_back_shares(const struct hf_frame *f, int x, int y, int n);
 void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, int to);
 // Add one source, its colour already weighted. r: radius of its sprite.
 void hf_add_source(struct walk *w, int x, int y, float r, const float colour[3], float weight);
-// Draw a part of sample x of a row on pixel (to_x, to_y) of the level, if it belongs to the walk's field.
-struct hf_backs;
+// Draw a part of sample x of a row (known.h) on pixel (to_x, to_y) of the level, if it belongs to the walk's field.
 void hf_add_back(struct walk *w, const struct hf_backs *b, int x, int to_x, int to_y, float part);
 // Draw the list.
 void hf_flush_sources(struct walk *w);

@@ -243,11 +243,6 @@ static int check_others(const struct cli_args *args, const struct tool_parser *p
                          args->other_count, MOST_PEELS);
     if (args->other_count > MOST_OVER)
         return tool_fail(error, -1, "--over is given %d times; %d is the most", args->other_count, MOST_OVER);
-    // What --quality chooses is checked by the library.
-    if (args->quality < 0 && !given(args->max_error) && args->params.engine != HF_ENGINE_LAYERS &&
-        args->params.engine != HF_ENGINE_SCATTER)
-        return tool_fail(error, -1, "%s is of use only with --engine layers and scatter, not %s", option,
-                         hf_engine_name(args->params.engine));
     return 0;
 }
 

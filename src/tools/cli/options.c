@@ -35,13 +35,14 @@ static const struct tool_option options[] = {
      "Default: the main one.", .parse = cli_parse_layer, FIELD(layer)},
     {"merge", 0, TOOL_FILES, NULL, "The layers of --layer are separate renders of one scene: defocus them together, merged "
      "by depth. The first gets the result; the others are kept as they are. Default: each is defocused by itself.",
-     FLAG(merge)},
+     FLAG(merge), .engines = "layers|scatter"},
     {"over", 0, TOOL_FILES, "FILE", "Another picture of INPUT's scene with depth of its own, before or behind it: defocus "
      "both together, merged by depth. May be given several times. A lens then sees past edges what FILE shows, not a "
-     "guess. In a shot it has a place for the number, too. Default: INPUT shows all there is.", .parse = cli_parse_other},
+     "guess. In a shot it has a place for the number, too. Default: INPUT shows all there is.", .parse = cli_parse_other,
+     .engines = "layers|scatter"},
     {"peel", 0, TOOL_FILES, "FILE", "What INPUT hides: of each pixel the surface behind it, its depth, and as alpha the "
      "part of the pixel in which there is one. Given twice, the second FILE has what the first hides. Default: it is "
-     "guessed.", .parse = cli_parse_other},
+     "guessed.", .parse = cli_parse_other, .engines = "layers|scatter"},
     {"grow", 0, TOOL_FILES, NULL, "Let the data window grow by the reach of the blur, up to the display window. New "
      "pixels are black and transparent, 0 in other channels, and far away in depth. Default: blur beyond the window is "
      "cut, with a warning.", FLAG(grow)},
