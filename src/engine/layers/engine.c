@@ -386,7 +386,8 @@ static size_t work(const struct hf_setup *s, const struct hf_cells *p)
         return 0;
     const int width = 2 * p->width[2] + 2 * HF_LAYERS_TILE, height = 2 * p->height[2] + 2 * HF_LAYERS_TILE;
     const size_t need[] = {
-        hf_layers_unmix_floats(2 * p->width[2]) + hf_layers_highlight_floats(p->width[2], p->height[2]),
+        hf_layers_unmix_floats(2 * p->width[2]) + hf_layers_highlight_floats(p->width[2], p->height[2]) +
+            (size_t)p->width[2] / HF_LAYERS_TILE + 1,  // two notes of a byte for each tile
         hf_layers_hidden_floats(l, p->width[3], p->height[3]), hf_layers_patterns_floats(l, p->width[4], p->height[4]),
         hf_layers_known_floats(l, p->width[4], p->height[4]), hf_layers_composite_floats(l, width, height)};
     for (size_t i = 0; i < sizeof need / sizeof *need; i++)

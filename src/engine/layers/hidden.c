@@ -340,7 +340,7 @@ int hf_layers_inside_c(const float *radius, const float *weight, ptrdiff_t strid
     for (int y = 0; y < rows; y++)
         for (int x = 0; x < n; x++) {
             const ptrdiff_t at = y * stride + x;
-            if (weight[at] > 0 && radius[at] > before && radius[at] < after)
+            if ((!weight || weight[at] > 0) && radius[at] > before && radius[at] < after)
                 return 1;
         }
     return 0;

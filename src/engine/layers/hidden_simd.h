@@ -455,7 +455,7 @@ static int layers_inside_simd(const float *radius, const float *weight, ptrdiff_
     for (int x = 0; x < n; x += VF_N) {
         const vm own = layers_first(n - x);
         for (int y = 0; y < rows; y++) {
-            const vf r = vf_load(radius + y * stride + x), w = vf_load(weight + y * stride + x);
+            const vf r = vf_load(radius + y * stride + x), w = weight ? vf_load(weight + y * stride + x) : vf_set1(1);
             const vm inside = vm_and(vf_gt(r, from), vf_lt(r, to));
             if (vm_any(vm_and(own, vm_and(inside, vf_gt(w, vf_zero())))))
                 return 1;

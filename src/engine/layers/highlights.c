@@ -48,7 +48,7 @@ void hf_layers_nine_c(const float *const in[9], int n, float *out)
 }
 
 void hf_layers_shares_c(const float *const in[6], const float *const around[5], const float *const covered[5], int n,
-                        float *out)
+                        float *out, uint8_t *any)
 {
     for (int x = 0; x < n; x++) {
         const float r = in[5][x], light = in[0][x] + in[1][x] + in[2][x];
@@ -59,7 +59,9 @@ void hf_layers_shares_c(const float *const in[6], const float *const around[5], 
             m = v < m ? v : m;
         }
         const float cap = (m * m) * (PLAIN + (r * r) * (LEAST * 3.14159265f));
-        out[x] = fabsf(r) > HF_LAYERS_FINE && light > cap ? in[4][x] * (1 - cap / light) : 0;
+        const int bright = fabsf(r) > HF_LAYERS_FINE && light > cap;
+        out[x] = bright ? in[4][x] * (1 - cap / light) : 0;
+        any[x / 16] |= (uint8_t)bright;
     }
 }
 
@@ -117,7 +119,8 @@ void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, fl
         make_means(f, cell, (const int[]){3, -1, -1}, scratch, cover);
 }
 
-void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch)
+void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch,
+                          uint8_t *any)
 {
     const int n = hf_min(2 * cell.x1, f->s->width) - 2 * cell.x0, channels = hf_layers(f->s)->channels;
     const ptrdiff_t stride = stride_of(cell), apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
@@ -133,6 +136,6 @@ void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct 
         for (int i = 0; i < 2; i++)
             in[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, 2 * cell.x0, py);
         hf_layers_kernels(f)->shares(in, around, channels == 4 ? covered : NULL, n,
-                                     hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, 2 * cell.x0, py));
+                                     hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, 2 * cell.x0, py), any);
     }
 }

@@ -15,6 +15,7 @@ size_t hf_layers_highlight_floats(int width, int height);
 // Fill scratch with the means around a cell's pixels.
 void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch);
 // Compute the shares of some of its rows, from their samples.
-void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch);
+void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch,
+                          uint8_t *any);
 
 #endif

@@ -36,7 +36,7 @@ static void layers_nine_simd(const float *const in[9], int n, float *out)
 }
 
 static void layers_shares_simd(const float *const in[6], const float *const around[5], const float *const covered[5],
-                               int n, float *out)
+                               int n, float *out, uint8_t *any)
 {
     const vf one = vf_set1(1);
     for (int x = 0; x < n; x += 2 * VF_N) {
@@ -62,7 +62,12 @@ static void layers_shares_simd(const float *const in[6], const float *const arou
             const vf cap =
                 vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(0.001f * 3.14159265f), vf_set1(2)));
             const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
-            layers_leave(out + at, vf_keep(bright, vf_mul(vf_load(in[4] + at), vf_sub(one, vf_div(cap, light[j])))));
+            vf share = vf_zero();
+            if (vm_any(bright)) {
+                share = vf_keep(bright, vf_mul(vf_load(in[4] + at), vf_sub(one, vf_div(cap, light[j]))));
+                any[at / 16] = 1;
+            }
+            layers_leave(out + at, share);
         }
     }
 }

@@ -14,7 +14,7 @@ typedef void hf_layers_nine(const float *const in[9], int n, float *out);
 // The part of n pixels' weight that is a highlight. in: colour, weight (4), radius (5). around: square roots of
 // the brightness at five pairs of pixels around; the least counts. covered: roots of alpha at the same places, or NULL.
 typedef void hf_layers_shares(const float *const in[6], const float *const around[5], const float *const covered[5],
-                              int n, float *out);
+                              int n, float *out, uint8_t *any);
 // The farthest samples of n quads, from two rows of samples: colour, weight (4), radius (5).
 typedef void hf_layers_quads(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
                              float *const out[6]);
@@ -56,7 +56,8 @@ typedef void hf_layers_alike(const struct hf_pattern_place *place, const struct 
 // Returns whether a share is positive; share may be NULL.
 typedef int hf_layers_extremes(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
                                int rows, struct hf_layers_range *out);
-// Whether rows of n contain a sample with weight and a radius between `before` and `after`.
+// Whether rows of n contain a sample with weight and a radius between `before` and `after`. Without `weight` all samples
+// have some.
 typedef int hf_layers_inside(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
                              float after);
 // A slice's parts of n samples, summed with those in the rows - 1 rows below. share: the part of their weight whose
@@ -175,8 +176,13 @@ enum {
 
 hf_kernel hf_layers_load_pass, hf_layers_unmix_pass, hf_layers_hidden_pass, hf_layers_patterns_pass,
     hf_layers_known_pass, hf_layers_composite_pass;
+// Of each tile of a row of tiles: 1 if it may have mixed pixels, and highlights. Of other tiles the weights, the mixed
+// samples and the shares need not be read.
+struct hf_layers_any {
+    uint8_t *mixed, *bright;
+};
 // Note the radii and slices of the samples that a cell has made, tile by tile.
-void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r);
+void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r, const struct hf_layers_any *any);
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r);
 
 // Of a disc's rows, counted from the outermost inwards: the last that reaches rows from..to around two sources.

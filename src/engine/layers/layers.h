@@ -171,6 +171,7 @@ struct hf_unmix_row {
     int channels;
     const float *radius[7], *colour[7][4], *sure[7], *middle, *slope;
     float *seen[6], *mixed[6];  // colour, weight (4), radius (5)
+    uint8_t *any;               // [i] becomes 1 where any of pixels 16 i to 16 i + 15 is mixed
 };
 
 // A row of the sums of a stack. weight is the coverage by all slices so far, colour the sum of their colours times

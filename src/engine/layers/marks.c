@@ -46,7 +46,7 @@ static struct hf_layers_range mark_tile(const struct hf_frame *f, const struct h
     return range;
 }
 
-void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
+void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r, const struct hf_layers_any *any)
 {
     const struct hf_layers *l = hf_layers(f->s);
     const struct hf_layers_kernels *k = hf_layers_kernels(f);
@@ -55,12 +55,18 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r)
         for (int tx = 2 * r.x0 / TILE; tx * TILE < hf_min(2 * r.x1, f->s->width); tx++) {
             const int x = tx * TILE, y = ty * TILE, at = ty * l->columns + tx, mark = at * l->words;
             const int n = hf_min(TILE, f->s->width - x), rows = hf_min(TILE, f->s->height - y);
-            const struct tile s = tile_of(seen, 0, x, y, n, rows), m = tile_of(mixed, 0, x, y, n, rows);
-            const float *share = l->set.highlights ? hf_at(seen, 2, x, y) : NULL;
-            l->seen_range[at] = none;
+            const int mixes = any->mixed[tx - 2 * r.x0 / TILE], shines = any->bright[tx - 2 * r.x0 / TILE];
+            const struct tile m = tile_of(mixed, 0, x, y, n, rows);
+            const float *share = shines ? hf_at(seen, 2, x, y) : NULL;
+            struct tile s = tile_of(seen, 0, x, y, n, rows);
+            s.weight = mixes ? s.weight : NULL;
+            l->seen_range[at] = l->mixed_range[at] = none;
             const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
             mark_slices(f, l->slice, l->slices, s, l->seen_range[at], &l->seen_marks[mark]);
-            l->mixed_range[at] = mark_tile(f, l->slice, m, &l->mixed_marks[mark]);
+            if (mixes)
+                l->mixed_range[at] = mark_tile(f, l->slice, m, &l->mixed_marks[mark]);
+            else
+                mark_slices(f, l->slice, l->slices, m, none, &l->mixed_marks[mark]);
             mark_slices(f, l->shine, l->shines, tile_of(seen, share ? 2 : 0, x, y, n, rows),
                         bright ? l->seen_range[at] : none, &l->share_marks[at * l->share_words]);
         }

@@ -88,19 +88,25 @@ void hf_layers_set_colours(const struct hf_frame *f, int b, struct hf_rect r, fl
 void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_layers *l = hf_layers(f->s);
+    const size_t tiles = (size_t)(2 * (r.x1 - r.x0) + TILE - 1) / TILE;
     float *means = f->work + hf_layers_unmix_floats(2 * (r.x1 - r.x0));
+    uint8_t *flags = (uint8_t *)(means + hf_layers_highlight_floats(r.x1 - r.x0, r.y1 - r.y0));
+    const struct hf_layers_any any = {flags, flags + tiles};
     if (l->set.highlights)
         hf_layers_highlight_means(f, r, means);
     for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y += TILE / 2) {
         const struct hf_rect rows = {r.x0, y, r.x1, hf_min(y + TILE / 2, r.y1)};
-        hf_layers_unmix_rows(f, rows, y == r.y0);
-        if (hf_layers(f->s)->given && hf_layers(f->s)->given->edges)
+        memset(flags, 0, 2 * tiles);
+        hf_layers_unmix_rows(f, rows, y == r.y0, any.mixed);
+        if (hf_layers(f->s)->given && hf_layers(f->s)->given->edges) {
             hf_layers_take_edges(f, rows);
+            memset(any.mixed, 1, tiles);
+        }
         if (l->set.highlights)
-            hf_layers_highlights(f, r, rows, means);
+            hf_layers_highlights(f, r, rows, means, any.bright);
         if (l->levels)
             hf_layers_quads_pass(f, rows);
-        hf_layers_mark_seen(f, rows);
+        hf_layers_mark_seen(f, rows, &any);
     }
     if (l->guessed) {
         hf_layers_set_colours(f, HF_LAYERS_BUF_SEEN, r, 1);

@@ -219,8 +219,10 @@ void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)
     for (int x = 0; x < n; x++)
         if (!(u->sure[3][x] < 1))
             keep(u, x);
-        else
+        else {
+            u->any[x / 16] = 1;
             unmix_pixel(u, x);
+        }
 }
 
 enum { AROUND = 16 };  // margin of a row of scratch, in floats
@@ -242,10 +244,35 @@ static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring,
     f->k->edges.sure(radius, n + 2 * AROUND, sure - AROUND, sure + 8 * stride - AROUND, sure + 16 * stride - AROUND);
 }
 
-void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin)
+// Point u at row y of the frame, from column x on, and at the rows around it.
+static void place_row(const struct hf_frame *f, int x, int y, float *ring, ptrdiff_t stride, struct hf_unmix_row *u)
+{
+    const struct hf_buf *radius = &f->buf[HF_LAYERS_BUF_RADIUS], *colour = &f->buf[HF_LAYERS_BUF_COLOUR];
+    const float *first[5] = {NULL};
+    first[4] = hf_at(radius, 0, x, y - 3);
+    for (int c = 0; c < u->channels; c++)
+        first[c] = hf_at(colour, c, x, y - 3);
+    for (int i = 0; i < 7; i++) {
+        u->radius[i] = first[4] + i * radius->stride;
+        u->sure[i] = ring + ((y + i - 3) & 7) * stride;
+        for (int c = 0; c < u->channels; c++)
+            u->colour[i][c] = first[c] + i * colour->stride;
+    }
+    u->middle = ring + (8 + (y & 7)) * stride;
+    u->slope = ring + (16 + (y & 7)) * stride;
+    hf_row(&f->buf[HF_LAYERS_BUF_SEEN], u->channels, x, y, u->seen);
+    hf_row(&f->buf[HF_LAYERS_BUF_MIXED], u->channels, x, y, u->mixed);
+    for (int i = 0; i < 2; i++) {
+        u->seen[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, x, y);
+        u->mixed[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], i, x, y);
+    }
+}
+
+void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin, uint8_t *any)
 {
     const struct hf_layers *l = hf_layers(f->s);
     const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
+    struct hf_unmix_row u = {.channels = l->channels, .any = any};
     const ptrdiff_t stride = n + 2 * AROUND;
     float *ring = f->work + AROUND;
     for (int y = y0 - 3; begin && l->edges && y < y0 + 3; y++)
@@ -253,22 +280,9 @@ void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin)
     for (int i = 0; begin && !l->edges && i < 8 * stride; i++)
         f->work[i] = 1;
     for (int y = y0; y < y1 && !hf_stopped(f->s->stop); y++) {
-        struct hf_unmix_row u = {
-            .channels = l->channels, .middle = ring + (8 + (y & 7)) * stride, .slope = ring + (16 + (y & 7)) * stride};
         if (l->edges)
             sure_row(f, x, n, y + 3, ring, stride);
-        for (int i = 0; i < 7; i++) {
-            u.radius[i] = hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, x, y + i - 3);
-            u.sure[i] = ring + ((y + i - 3) & 7) * stride;
-            for (int c = 0; c < l->channels; c++)
-                u.colour[i][c] = hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], c, x, y + i - 3);
-        }
-        hf_row(&f->buf[HF_LAYERS_BUF_SEEN], l->channels, x, y, u.seen);
-        hf_row(&f->buf[HF_LAYERS_BUF_MIXED], l->channels, x, y, u.mixed);
-        for (int i = 0; i < 2; i++) {
-            u.seen[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, x, y);
-            u.mixed[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], i, x, y);
-        }
+        place_row(f, x, y, ring, stride, &u);
         hf_layers_kernels(f)->unmix(&u, n);
     }
 }

@@ -44,7 +44,7 @@ float hf_unmix_lamp(const struct hf_unmix_row *row, int x, float most, float alp
 // Floats of scratch for un-mixing rows of `width` pixels.
 size_t hf_layers_unmix_floats(int width);
 // Un-mix rows. begin: r holds the first rows of a cell; later rows of that cell continue with what they left in
-// scratch.
-void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin);
+// scratch. any: as in struct hf_unmix_row.
+void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin, uint8_t *any);
 
 #endif

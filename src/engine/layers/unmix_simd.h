@@ -45,8 +45,65 @@ HF_INLINE vf layers_finish(const int channels, vf counted, vf squares, vf *mean)
     return vf_keep(vf_gt(spread, vf_zero()), spread);
 }
 
-// Means and variances of the two sides. Lanes where a side has little weight are completed one by one. Returns the
-// lanes that have both sides.
+// farthest() of unmix.c for all lanes at once: the five rows of five are gone over twice, first for the largest
+// distance. front: lanes that want the front's mean.
+static __attribute__((noinline)) void layers_farthest(const struct hf_unmix_row *u, int x, const int channels, vm front,
+                                                      const vf other[4], vf colour[5])
+{
+    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x), one = vf_set1(1);
+    vf share[25], distance[25], most = vf_zero(), sum = vf_zero();
+    for (int k = 0; k < 25; k++) {
+        const int y = 1 + k / 5, at = x - 2 + k % 5;
+        const vf s = vf_add(vf_mul(vf_sub(middle, vf_load(u->radius[y] + at)), slope), vf_set1(0.5f));
+        const vf of_front = vf_min(vf_max(s, vf_zero()), one);
+        vf d = vf_zero();
+        share[k] = vf_select(front, of_front, vf_sub(one, of_front));
+        for (int c = 0; c < channels; c++) {
+            const vf apart = vf_abs(vf_sub(vf_load(u->colour[y][c] + at), other[c]));
+            d = vf_add(d, vf_mul(apart, vf_set1(0.125f)));
+        }
+        distance[k] = vf_mul(share[k], d);
+        most = vf_max(distance[k], most);
+    }
+    for (int c = 0; c < 5; c++)
+        colour[c] = vf_zero();
+    for (int k = 0; k < 25; k++) {
+        const int y = 1 + k / 5, at = x - 2 + k % 5;
+        const vf far = vf_select(vf_gt(most, vf_zero()), vf_div(distance[k], most), one), square = vf_mul(far, far);
+        const vf fourth = vf_mul(square, square);
+        const vf w = vf_mul(vf_mul(share[k], vf_mul(fourth, fourth)), vf_set1(0.03125f));
+        sum = vf_add(sum, w);
+        colour[4] = vf_add(colour[4], vf_mul(w, vf_load(u->radius[y] + at)));
+        for (int c = 0; c < channels; c++)
+            colour[c] = vf_add(colour[c], vf_mul(w, vf_load(u->colour[y][c] + at)));
+    }
+    for (int c = 0; c < 5; c++)
+        colour[c] = vf_keep(vf_gt(sum, vf_zero()), vf_div(colour[c], sum));
+}
+
+// hf_unmix_complete for all lanes at once. lacks: lanes where a side has less weight than `little`.
+HF_INLINE void layers_complete(const struct hf_unmix_row *u, int x, const int channels, vm lacks, const vf weight[2],
+                               vf little, vf mean[2][5], vf spread[2])
+{
+    const vm front = vf_lt(weight[0], weight[1]);
+    const vf known = vf_div(vf_select(front, weight[0], weight[1]), little);
+    const vm of[2] = {vm_and(lacks, front), vm_and(lacks, vm_not(front))};
+    vf other[4], colour[5];
+    for (int c = 0; c < channels; c++)
+        other[c] = vf_select(front, mean[1][c], mean[0][c]);
+    layers_farthest(u, x, channels, front, other, colour);
+    for (int i = 0; i < 2; i++) {
+        spread[i] = vf_select(of[i], vf_mul(spread[i], known), spread[i]);
+        for (int c = 0; c < 5; c++) {
+            if (c < channels || c == 4) {
+                const vf part = vf_add(colour[c], vf_mul(known, vf_sub(mean[i][c], colour[c])));
+                mean[i][c] = vf_select(of[i], vf_select(vf_gt(known, vf_zero()), part, colour[c]), mean[i][c]);
+            }
+        }
+    }
+}
+
+// Means and variances of the two sides. Returns the lanes that have both sides.
 HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5],
                           vf spread[2], vf *known)
 {
@@ -87,34 +144,11 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
         spread[i] = layers_finish(channels, counted[i], spread[i], mean[i]);
     const vf both_weigh = vf_add(weight[0], weight[1]), little = vf_mul(vf_set1(HF_UNMIX_LEAN), both_weigh);
     *known = vf_min(vf_mul(both_weigh, vf_set1(1 / HF_UNMIX_FAINT)), vf_set1(1));
-    const vm missing = vm_and(mixed, vm_not(vm_and(vf_gt(weight[0], little), vf_gt(weight[1], little))));
-    if (!vm_any(missing))
-        return mixed;
-    float w[2][VF_N], m[2][5][VF_N], s[2][VF_N], both[VF_N];
-    vf_store(both, vf_keep(mixed, vf_set1(1)));
-    for (int i = 0; i < 2; i++) {
-        vf_store(w[i], weight[i]);
-        vf_store(s[i], spread[i]);
-        for (int c = 0; c < 5; c++)
-            vf_store(m[i][c], mean[i][c]);
-    }
-    for (int lane = 0; lane < VF_N; lane++) {
-        float one[2] = {w[0][lane], w[1][lane]}, of[2][5], spreads[2] = {s[0][lane], s[1][lane]};
-        if (both[lane] == 0)
-            continue;
-        for (int i = 0; i < 10; i++)
-            of[i / 5][i % 5] = m[i / 5][i % 5][lane];
-        both[lane] = (float)hf_unmix_complete(u, x + lane, one, of, spreads);
-        s[0][lane] = spreads[0];
-        s[1][lane] = spreads[1];
-        for (int i = 0; i < 10; i++)
-            m[i / 5][i % 5][lane] = of[i / 5][i % 5];
-    }
-    for (int i = 0; i < 10; i++)
-        mean[i / 5][i % 5] = vf_load(m[i / 5][i % 5]);
-    for (int i = 0; i < 2; i++)
-        spread[i] = vf_load(s[i]);
-    return vf_gt(vf_load(both), vf_zero());
+    mixed = vm_and(mixed, vf_gt(both_weigh, vf_zero()));
+    const vm lacks = vm_and(mixed, vf_lt(vf_min(weight[0], weight[1]), little));
+    if (vm_any(lacks))
+        layers_complete(u, x, channels, lacks, weight, little, mean, spread);
+    return mixed;
 }
 
 HF_INLINE vf layers_rest(const struct hf_unmix_row *u, int x, int c, vf a, vf mean[2][5])
@@ -197,10 +231,12 @@ HF_INLINE void layers_unmix_of(const struct hf_unmix_row *u, int n, const int ch
 {
     for (int x = 0; x < n; x += VF_N) {
         const vm mixed = vf_lt(vf_load(u->sure[3] + x), vf_set1(1));
-        if (vm_any(mixed))
+        if (vm_any(mixed)) {
+            u->any[x / 16] = 1;
             layers_unmix_vector(u, x, channels, mixed);
-        else
+        } else {
             layers_keep(u, x, channels);
+        }
     }
 }
 
