@@ -99,6 +99,8 @@ const struct test tests[] = {
     ROW("tent", SCATTER_TENT, 800, scatter_make, scatter_call, scatter_check),
     ROW("mean_row", SCATTER_MEAN, 800, scatter_make, scatter_call, scatter_check),
     ROW("scatter_note", SCATTER_NOTE, 800, scatter_make, scatter_call, scatter_check),
+    ROW("slice_row", SCATTER_SLICE_ROW, 800, scatter_make, scatter_call, scatter_check),
+    ROW("slice_behind", SCATTER_SLICE_BEHIND, 800, scatter_make, scatter_call, scatter_check),
     ROW("splat_runs", SCATTER_RUNS, 800, scatter_make, scatter_call, scatter_check),
     ROW("splat_taps", SCATTER_TAPS, 800, scatter_make, scatter_call, scatter_check),
     ROW("splat", SCATTER_SPLAT, 800, scatter_make, scatter_call, scatter_check),

@@ -7,6 +7,7 @@
 
 #include "harness.h"
 #include "engine/scatter/kernels.h"
+#include "engine/scatter/walk.h"
 
 enum { LINES_IN = 12, LINES_OUT = 8, LINES = LINES_IN + LINES_OUT, INVERSES = 64 };
 
@@ -278,6 +279,47 @@ static void note_make(struct world *w)
             line(w, ARENA_MADE, 4)[x] = 1;
 }
 
+// ---- slices ----
+
+// Radii, and rows of a slice: weighted colours and weights. Of those in front of it for the second kernel, with backs.
+static void slice_row_make(struct world *w)
+{
+    fill_radii(w, 0, 0, w->n, 0);
+    for (int c = 0; c < 4; c++) {
+        fill_colours(w, LINES_IN + c, 0, w->n);
+        put_out(w, LINES_IN + c, w->n);
+    }
+}
+
+static void fill_weights(struct world *w, int i);
+
+static void slice_behind_make(struct world *w)
+{
+    slice_row_make(w);
+    fill_radii(w, 1, 0, w->n, 0);
+    fill_weights(w, 2);
+    for (int c = 0; c < 3; c++)
+        fill_colours(w, 3 + c, 0, w->n);
+    fill_weights(w, 6);
+    fill_weights(w, LINES_IN + 3);
+    now.from = rng_one_in(&w->rng, 2);
+}
+
+static void slice_call(struct world *w, const struct kernels *k, enum arena a, int which)
+{
+    const struct hf_scatter_slice slice = {.begin = {4, 5}, .end = {12, 15}};
+    const float *const at[3] = {line(w, a, 0), now.from ? line(w, a, 2) : NULL, line(w, a, 1)};
+    float *in[4], *out[4];
+    for (int c = 0; c < 4; c++) {
+        in[c] = line(w, a, 3 + c);
+        out[c] = which == SCATTER_SLICE_ROW || c < now.channels || c == 3 ? line(w, a, LINES_IN + c) : NULL;
+    }
+    if (which == SCATTER_SLICE_ROW)
+        k->scatter.slice_row(&slice, now.sign, at[0], now.channels, w->n, out);
+    else
+        k->scatter.slice_behind(&now.scatter, at, in, w->n, out);
+}
+
 // ---- putting together ----
 
 static void fill_weights(struct world *w, int i)
@@ -541,17 +583,18 @@ static void settle_call(struct world *w, const struct kernels *k, enum arena a)
 void scatter_make(struct world *w, int which)
 {
     static void (*const make[])(struct world *) = {
-        [SCATTER_WEIGHTS] = weights_make, [SCATTER_PICTURES] = pictures_make,
-        [SCATTER_LIST] = list_make,       [SCATTER_QUAD] = quad_make,
-        [SCATTER_SITE] = site_make,       [SCATTER_TENT_WEIGHTS] = tent_weights_make,
-        [SCATTER_TENT] = tent_make,       [SCATTER_MEAN] = mean_make,
-        [SCATTER_NOTE] = note_make,       [SCATTER_RUNS] = window_make,
-        [SCATTER_TAPS] = window_make,     [SCATTER_SPLAT] = splat_make,
-        [SCATTER_SETTLE] = settle_make,   [SCATTER_BLEND] = blend_make,
-        [SCATTER_NEAR] = near_make,       [SCATTER_MOST] = rows_make,
-        [SCATTER_SEEN] = rows_make,       [SCATTER_SEEN_WEIGHTS] = seen_make,
-        [SCATTER_THIRD] = rows_make,      [SCATTER_PART] = part_make,
-        [SCATTER_ADD_PART] = rows_make,   [SCATTER_UP] = rows_make,
+        [SCATTER_WEIGHTS] = weights_make,     [SCATTER_PICTURES] = pictures_make,
+        [SCATTER_LIST] = list_make,           [SCATTER_QUAD] = quad_make,
+        [SCATTER_SITE] = site_make,           [SCATTER_TENT_WEIGHTS] = tent_weights_make,
+        [SCATTER_TENT] = tent_make,           [SCATTER_MEAN] = mean_make,
+        [SCATTER_SLICE_ROW] = slice_row_make, [SCATTER_SLICE_BEHIND] = slice_behind_make,
+        [SCATTER_NOTE] = note_make,           [SCATTER_RUNS] = window_make,
+        [SCATTER_TAPS] = window_make,         [SCATTER_SPLAT] = splat_make,
+        [SCATTER_SETTLE] = settle_make,       [SCATTER_BLEND] = blend_make,
+        [SCATTER_NEAR] = near_make,           [SCATTER_MOST] = rows_make,
+        [SCATTER_SEEN] = rows_make,           [SCATTER_SEEN_WEIGHTS] = seen_make,
+        [SCATTER_THIRD] = rows_make,          [SCATTER_PART] = part_make,
+        [SCATTER_ADD_PART] = rows_make,       [SCATTER_UP] = rows_make,
         [SCATTER_BEHIND] = behind_make};
     start(w);
     now.which = which;
@@ -596,6 +639,10 @@ void scatter_call(struct world *w, const struct kernels *k, enum arena a, int wh
         s->note(in[0], colour, now.channels, w->n, &w->result[a].counts);
         return;
     }
+    case SCATTER_SLICE_ROW:
+    case SCATTER_SLICE_BEHIND:
+        slice_call(w, k, a, which);
+        return;
     case SCATTER_SETTLE:
         settle_call(w, k, a);
         return;

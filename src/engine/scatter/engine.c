@@ -371,6 +371,8 @@ void hf_scatter_kernels_c(struct hf_scatter_kernels *k)
         .tent_weights = hf_tent_weights_c,
         .tent = hf_tent_c,
         .mean_row = hf_mean_row_c,
+        .slice_row = hf_slice_row_c,
+        .slice_behind = hf_slice_behind_c,
         .note = hf_scatter_note_c,
         .blend = hf_scatter_blend_c,
         .seen_weights = hf_seen_weights_c,

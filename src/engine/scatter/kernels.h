@@ -7,6 +7,7 @@
 #include "engine/scatter/scatter.h"
 
 struct hf_run;
+struct hf_scatter_slice;
 // Draw a list of sprites into the sums (splat.c).
 typedef void hf_splat(const struct hf_sums *s, const struct hf_aperture *a, const struct hf_splats *list);
 // Draw an outline's rows from row y on, around column x.
@@ -28,6 +29,13 @@ typedef void hf_list_row(struct hf_splats list[HF_BINS], const struct hf_source_
 // into planes (lane 3, the weight, to out[3]), and clear the sums.
 typedef void hf_settle(int64_t *const lane[HF_BINS], int bins, int n, int channels, const double (*unscale)[4],
                        float *const out[4]);
+// Multiply rows of n pixels, `channels` of colour and the weight (3), by their part in a slice.
+typedef void hf_slice_row(const struct hf_scatter_slice *s, float sign, const float *radius, int channels, int n,
+                          float *const row[4]);
+// Composite n pixels of a slice behind those of the slices in front of it: weighted colours, of which some may be NULL,
+// and weights (3). at: the pixels' radii; the shares of their backs, or NULL; and the radii of these.
+typedef void hf_slice_behind(const struct hf_scatter *t, const float *const at[3], float *const slice[4], int n,
+                             float *const to[4]);
 // Count what n blurred pixels' samples contain.
 typedef void hf_scatter_note(const float *radius, float *const colour[4], int channels, int n,
                              struct hf_counts *counts);
@@ -68,6 +76,8 @@ struct hf_scatter_kernels {
     hf_tent_weights *tent_weights;
     hf_tent *tent;
     hf_mean_row *mean_row;
+    hf_slice_row *slice_row;
+    hf_slice_behind *slice_behind;
     hf_scatter_note *note;
     hf_scatter_blend *blend;
     hf_seen_weights *seen_weights;
@@ -93,6 +103,8 @@ hf_site_row hf_site_row_c;
 hf_tent_weights hf_tent_weights_c;
 hf_tent hf_tent_c;
 hf_mean_row hf_mean_row_c;
+hf_slice_row hf_slice_row_c;
+hf_slice_behind hf_slice_behind_c;
 hf_scatter_note hf_scatter_note_c;
 hf_scatter_blend hf_scatter_blend_c;
 hf_seen_weights hf_seen_weights_c;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The scatter's kernels for one instruction set.
 #include "engine/scatter/behind_simd.h"
+#include "engine/scatter/slice_simd.h"
 #include "engine/scatter/source_simd.h"
 #include "engine/scatter/splat_simd.h"
 #include "engine/scatter/tent_simd.h"
@@ -19,6 +20,8 @@ void HF_SIMD_NAME(hf_scatter_kernels)(struct hf_scatter_kernels *k)
     k->tent_weights = tent_weights_simd;
     k->tent = tent_simd;
     k->mean_row = mean_row_simd;
+    k->slice_row = slice_row_simd;
+    k->slice_behind = slice_behind_simd;
     k->note = scatter_note_simd;
     k->blend = scatter_blend_simd;
     k->seen_weights = seen_weights_simd;

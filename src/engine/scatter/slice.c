@@ -42,11 +42,15 @@ void hf_scatter_slice_range(const struct hf_frame *f, struct hf_rect r, float *l
     float low = FLT_MAX, high = 0;
     for (int y = y0; y < y1 && !hf_stopped(f->s->stop); y++) {
         const float *radius = hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y);
+        // The bits of positive floats have their order, and the compiler compares whole numbers on vectors.
+        int32_t from = (int32_t)hf_bits(low), to = (int32_t)hf_bits(high);
         for (int x = 0; x < x1 - x0; x++) {
-            const float v = radius[x] > 0 ? radius[x] : FLT_MAX;
-            low = v < low ? v : low;
-            high = radius[x] > high ? radius[x] : high;
+            const int32_t own = (int32_t)hf_bits(radius[x]), far = own > 0 ? own : INT32_MAX;
+            from = far < from ? far : from;
+            to = own > to ? own : to;
         }
+        low = hf_from_bits((uint32_t)from);
+        high = hf_from_bits((uint32_t)to);
         for (int i = 0, n = x1 - x0; i < HF_BACKS; i++) {
             struct hf_backs b;
             if (!hf_scatter_backs(f, i, x0, y, &b))
@@ -61,39 +65,52 @@ void hf_scatter_slice_range(const struct hf_frame *f, struct hf_rect r, float *l
     *most = high;
 }
 
-void hf_scatter_slice_row(const struct hf_scatter_slice *s, float sign, const float *radius, int n, float *row)
+void hf_slice_row_c(const struct hf_scatter_slice *s, float sign, const float *radius, int channels, int n,
+                    float *const row[4])
 {
-    for (int x = 0; x < n; x++)
-        row[x] *= hf_scatter_slice_part(s, sign * radius[x]);
+    for (int x = 0; x < n; x++) {
+        const float part = hf_scatter_slice_part(s, sign * radius[x]);
+        for (int c = 0; c < 4; c++)
+            if (c == 3 || c < channels)
+                row[c][x] *= part;
+    }
 }
 
 // The part of a pixel in which far sprites can show, from its two sides by their shares.
-static float room_at(const struct hf_frame *f, int x, int y)
+static float room_at(const struct hf_scatter *t, const float *const at[3], int x)
 {
-    const struct hf_scatter *t = hf_scatter(f->s);
-    const float front = 1 - hf_own_part(t, fabsf(*hf_at(&f->buf[HF_BUF_RADIUS], 0, x, y)));
-    const float share = t->mixed ? *hf_at(&f->buf[HF_BUF_BACK_AT], 0, x, y) : 0;
-    if (!(share > 0))
-        return front;
-    return hf_lerp(front, 1 - hf_own_part(t, fabsf(*hf_at(&f->buf[HF_BUF_BACK_AT], 1, x, y))), share);
+    const float front = 1 - hf_own_part(t, fabsf(at[0][x])), share = at[1] ? at[1][x] : 0;
+    return share > 0 ? hf_lerp(front, 1 - hf_own_part(t, fabsf(at[2][x])), share) : front;
+}
+
+void hf_slice_behind_c(const struct hf_scatter *t, const float *const at[3], float *const slice[4], int n,
+                       float *const to[4])
+{
+    for (int x = 0; x < n; x++) {
+        const float own = slice[3][x], left = fmaxf(room_at(t, at, x) - to[3][x], 0),
+                    part = left < own ? left / own : 1;
+        if (!(own > 0))
+            continue;
+        for (int c = 0; c < 4; c++)
+            if (to[c])
+                to[c][x] += slice[c][x] * part;
+    }
 }
 
 void hf_scatter_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf_target *to,
                              const struct hf_target *slice)
 {
+    const struct hf_scatter *t = hf_scatter(f->s);
     const int x0 = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x0, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
     for (int y = y0; y < y1 && !hf_stopped(f->s->stop); y++) {
-        const ptrdiff_t at = (y - y0) * to->stride, from = (y - y0) * slice->stride;
-        for (int x = 0; x < n; x++) {
-            float *weight = &to->ch[3][at + x];
-            const float own = slice->ch[3][from + x], left = fmaxf(room_at(f, x0 + x, y) - *weight, 0);
-            if (!(own > 0))
-                continue;
-            const float part = left < own ? left / own : 1;
-            for (int c = 0; c < 3; c++)
-                if (to->ch[c])
-                    to->ch[c][at + x] += slice->ch[c][from + x] * part;
-            *weight += own * part;
+        const float *at[3] = {hf_at(&f->buf[HF_BUF_RADIUS], 0, x0, y), hf_back_shares(f, x0, y, n)};
+        float *row[4], *out[4];
+        if (at[1])
+            at[2] = hf_at(&f->buf[HF_BUF_BACK_AT], 1, x0, y);
+        for (int c = 0; c < 4; c++) {
+            row[c] = to->ch[c] ? slice->ch[c] + (y - y0) * slice->stride : NULL;
+            out[c] = to->ch[c] ? to->ch[c] + (y - y0) * to->stride : NULL;
         }
+        hf_scatter_kernels(f)->slice_behind(t, at, row, n, out);
     }
 }

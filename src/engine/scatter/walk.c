@@ -27,9 +27,8 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
         for (int c = 0; c < 4; c++)
             if (c == 3 || c < w->group->channels)
                 row[c][x] *= 1 - share[x];
-    for (int c = 0; c < 4 && !w->slice.whole; c++)
-        if (c == 3 || c < w->group->channels)
-            hf_scatter_slice_row(&w->slice, sign, r.radius, x1 - x0, row[c]);
+    if (!w->slice.whole)
+        hf_scatter_kernels(f)->slice_row(&w->slice, sign, r.radius, w->group->channels, x1 - x0, row);
     hf_scatter_kernels(f)->source_pictures(r.radius, r.weight, r.scale, x1 - x0, (int32_t *)row[4]);
     return r;
 }

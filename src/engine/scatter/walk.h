@@ -99,8 +99,6 @@ void hf_flush_sources(struct walk *w);
 // Slice k of the far field, and the range of far radii that reach the window r.
 struct hf_scatter_slice hf_scatter_slice_make(const struct hf_scatter *t, int k);
 void hf_scatter_slice_range(const struct hf_frame *f, struct hf_rect r, float *least, float *most);
-// Multiply a row of n pixels by their part in a slice.
-void hf_scatter_slice_row(const struct hf_scatter_slice *s, float sign, const float *radius, int n, float *row);
 // Composite a slice behind the slices in front of it.
 void hf_scatter_slice_behind(const struct hf_frame *f, struct hf_rect r, const struct hf_target *to,
                              const struct hf_target *slice);
