@@ -76,6 +76,12 @@ static void fill_colours(struct world *w, int i, int from, int to)
         line(w, ARENA_MADE, i)[x] = random_colour(&w->rng, w->colours);
 }
 
+static void fill_weights(struct world *w, int i)
+{
+    for (int x = 0; x < w->n; x++)
+        line(w, ARENA_MADE, i)[x] = rng_one_in(&w->rng, 3) ? 0 : rng_float(&w->rng, 0, 1.2f);
+}
+
 static void start(struct world *w)
 {
     struct rng *r = &w->rng;
@@ -281,7 +287,7 @@ static void note_make(struct world *w)
 
 // ---- slices ----
 
-// Radii, and rows of a slice: weighted colours and weights. Of those in front of it for the second kernel, with backs.
+// Radii, and the rows that are multiplied by their part in a slice.
 static void slice_row_make(struct world *w)
 {
     fill_radii(w, 0, 0, w->n, 0);
@@ -291,8 +297,7 @@ static void slice_row_make(struct world *w)
     }
 }
 
-static void fill_weights(struct world *w, int i);
-
+// Radii and backs, a slice, and what lies in front of it.
 static void slice_behind_make(struct world *w)
 {
     slice_row_make(w);
@@ -321,12 +326,6 @@ static void slice_call(struct world *w, const struct kernels *k, enum arena a, i
 }
 
 // ---- putting together ----
-
-static void fill_weights(struct world *w, int i)
-{
-    for (int x = 0; x < w->n; x++)
-        line(w, ARENA_MADE, i)[x] = rng_one_in(&w->rng, 3) ? 0 : rng_float(&w->rng, 0, 1.2f);
-}
 
 static void blend_make(struct world *w)
 {
