@@ -9,18 +9,18 @@
 // The command's words; display-encoded root mean square error, geometric mean of the scenes and of the worst;
 // milliseconds of a megapixel; the parameters that the words stand for.
 #define HF_LADDER_STEPS \
-    {"--engine gaussian --resolution quarter --iterations 4", 0.058137f, 0.078830f, 1.132f, \
+    {"--engine gaussian --resolution quarter --iterations 4", 0.058137f, 0.078830f, 1.515f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_GAUSSIAN, .hexagon.resolution = 2, .scatter.resolution = 2, .gaussian.resolution = 2, .gaussian.iterations = 4}}, \
-    {"--engine gather", 0.033948f, 0.069395f, 22.92f, \
+    {"--engine gather", 0.033948f, 0.069395f, 19.32f, \
      {HF_PARAMS_DEFAULTS}}, \
-    {"--engine layers", 0.023639f, 0.032431f, 42.26f, \
+    {"--engine layers", 0.022294f, 0.027203f, 46.38f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS}}, \
-    {"--engine layers --layers-quality best --lens-points 1", 0.022740f, 0.032629f, 73.70f, \
+    {"--engine layers --layers-quality best --lens-points 1", 0.021463f, 0.027434f, 86.30f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3, .layers.lens_points = 1}}, \
-    {"--engine layers --layers-quality best", 0.020895f, 0.027630f, 227.5f, \
+    {"--engine layers --layers-quality best", 0.020842f, 0.027420f, 224.4f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3}}
 // steps of draft, standard, high and best
 #define HF_LADDER_QUALITIES 1, 2, 4, 4
 // milliseconds per megapixel of each engine with its default settings
-#define HF_LADDER_ENGINES 22.92f, 37.96f, 95.95f, 2.593f, 42.26f, 11.28f
+#define HF_LADDER_ENGINES 19.32f, 44.43f, 98.66f, 3.081f, 46.38f, 11.96f
 // clang-format on

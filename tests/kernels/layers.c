@@ -188,20 +188,21 @@ static void blend_call(const struct world *w, const struct kernels *k, enum aren
     set_of(w, a, 0, in);
     for (int c = 0; c < 4; c++)
         to.colour[c] = line(w, a, IN + c);
-    k->layers.blend(&to, now.channels, (const float *const *)in, (enum hf_layers_sums)(now.rows % 4), w->n,
-                    now.add ? line(w, a, IN + 7) : NULL);
+    k->layers.blend(&to, now.channels, (const float *const *)in, (enum hf_layers_sums)(now.rows % 4), w->n);
 }
 
 static void finish_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     struct hf_stack_row near = {.weight = line(w, a, 4)};
-    float *far[6], *own[6], *out[6];
+    float *far[6], *own[6], *light[6], *out[6];
     set_of(w, a, 6, far);
     set_of(w, a, 12, own);
+    set_of(w, a, 18, light);
     set_of(w, a, IN, out);
     for (int c = 0; c < 4; c++)
         near.colour[c] = line(w, a, c);
-    k->layers.finish(&near, now.with ? (const float *const *)far : NULL, (const float *const *)own, now.channels,
+    k->layers.finish(&near, now.with ? (const float *const *)far : NULL,
+                     now.rows % 2 ? (const float *const *)light : NULL, (const float *const *)own, now.channels,
                      now.add ? HF_LAYERS_FAINT : HF_LAYERS_FAINT_ALONE, w->n, out);
 }
 
@@ -336,7 +337,7 @@ void layers_make(struct world *w, int which)
         now.roundings = 8;
         return;
     default:  // stacks
-        for (int i = 0; i < 3; i++)
+        for (int i = 0; i < 4; i++)
             fill_set(w, 6 * i, 0, w->n);
         for (int i = 0; i < 7; i++)
             fill(w, IN + i, 0, w->n, i < 4 ? COLOUR : WEIGHT);
@@ -346,8 +347,6 @@ void layers_make(struct world *w, int which)
             put(w, IN + 6, w->n, 32);
         if (which == LAYERS_BLEND && now.rows % 4 == HF_SUMS_HELD)
             put(w, IN + 8, w->n, 32);
-        if (which == LAYERS_BLEND && now.add)
-            put(w, IN + 7, w->n, 32);
         return;
     }
     fill(w, IN, 0, w->n, COLOUR);

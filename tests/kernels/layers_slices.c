@@ -81,7 +81,6 @@ void views_call(const struct world *w, const struct kernels *k, enum arena a)
                               .far = now.rows % (PLANES + 1),
                               .views = VIEWS,
                               .channels = now.channels,
-                              .lit = now.add,
                               .n = w->n,
                               .eye = now.with ? &eye : NULL};
     for (int i = 0; i < PLANES; i++)
@@ -89,9 +88,7 @@ void views_call(const struct world *w, const struct kernels *k, enum arena a)
                                           .row = 8 * stride(w),
                                           .channel = stride(w),
                                           .level = i == 1,
-                                          .shift = (const int16_t(*)[2])now.shift[i],
-                                          .light = now.add && i == 1 ? line(w, a, LIGHT) : NULL,
-                                          .seen = line(w, a, LIGHT + 1)};
+                                          .shift = (const int16_t(*)[2])now.shift[i]};
     for (int i = 0; i < 5; i++) {
         row.near[i] = line(w, a, IN + i);
         row.beyond[i] = line(w, a, IN + 5 + i);

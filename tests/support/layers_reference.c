@@ -16,7 +16,7 @@ static double next_radius(const struct frame *f, double r)
     return r + fmax(fmin(fmax(1, floor(r / (2 + f->fine))), spacing), r / 32);
 }
 
-static int level_of(const struct frame *f, double r)
+int layers_reference_level_of(const struct frame *f, double r)
 {
     return fabs(r) < f->half                                      ? 0
            : fabs(r) < f->quarter                                 ? 1
@@ -24,19 +24,14 @@ static int level_of(const struct frame *f, double r)
                                                                   : 3;
 }
 
-struct slice {
-    double before, own, after;
-    double hidden[2];  // radii before and after for hidden samples; equal: the slice has none
-};
-
 // Whether hidden samples skip slice n, counted from the focus: its neighbours are coarser than half resolution and
 // close to each other.
 static int is_left_out(const struct frame *f, int n, double before, double r)
 {
-    return n % 2 && level_of(f, before) > 1 && next_radius(f, r) - before <= r / 8;
+    return n % 2 && layers_reference_level_of(f, before) > 1 && next_radius(f, r) - before <= r / 8;
 }
 
-static double part_of(const struct slice *s, double r)
+double layers_reference_part_of(const struct slice *s, double r)
 {
     if (r <= s->before || r >= s->after)
         return 0;
@@ -44,8 +39,6 @@ static double part_of(const struct slice *s, double r)
         return isinf(s->before) ? 1 : (r * r - s->before * s->before) / (s->own * s->own - s->before * s->before);
     return isinf(s->after) ? 1 : 1 - (r * r - s->own * s->own) / (s->after * s->after - s->own * s->own);
 }
-
-enum kind { SEEN, BEHIND, SHINE };
 
 // How much a sample of that radius, at an edge of the frame, counts beyond it: twice the depth at which its surface, of at
 // least half its radius and surely of a quarter, is seen inside, over its radius. Samples up to 2 pixels before the focus
@@ -107,14 +100,15 @@ static void spread(const struct frame *f, const struct grid *set, int x, int y, 
     out[WEIGHT] = before > 0 ? own * fmin(out[WEIGHT] / before, 1) : 0;
 }
 
-// Add the samples of a set that belong to a slice to the sources of a level.
-static void add_sources(const struct frame *f, const struct slice *s, const struct grid *set, int apart, enum kind kind,
-                        int light, int quads, struct grid *to)
+void layers_reference_add(const struct frame *f, const struct slice *s, const struct grid *set, int apart,
+                          enum kind kind, int light, int quads, struct grid *to)
 {
     for (int y = to->y0 * (1 << apart); y < to->y1 * (1 << apart); y++)
         for (int x = to->x0 * (1 << apart); x < to->x1 * (1 << apart); x++) {
             double pixel[SAMPLE];
             const double *v = edge(set, x, y);
+            if (kind == SHINE && f->tile && (floor(x / 16.0) != f->tile[0] || floor(y / 16.0) != f->tile[1]))
+                continue;
             if (quads) {
                 spread(f, set, x, y, pixel);
                 v = pixel;
@@ -122,11 +116,12 @@ static void add_sources(const struct frame *f, const struct slice *s, const stru
             double *out =
                 at(to, x >= 0 ? x >> apart : -((-x - 1) >> apart) - 1, y >= 0 ? y >> apart : -((-y - 1) >> apart) - 1);
             const double all = set == &f->seen || set == &f->mixed ? counts(f, v, x, y) : 1;
-            const double part = v[WEIGHT] > 0 ? all * part_of(s, v[RADIUS]) / pow(4, apart) : 0;
-            const double w = part * (kind == SHINE ? v[SHARE] : v[WEIGHT]);
-            const double dim = kind == SEEN && light ? part * v[SHARE] : 0;
+            const double part = v[WEIGHT] > 0 ? all * layers_reference_part_of(s, v[RADIUS]) / pow(4, apart) : 0;
+            const double w = part * (kind == SHINE           ? v[SHARE]
+                                     : kind == SEEN && light ? v[WEIGHT] - v[SHARE]
+                                                             : v[WEIGHT]);
             for (int c = 0; c < f->channels; c++)
-                out[c] += (c < 3 ? w - dim : w) * v[c];
+                out[c] += w * v[c];
             out[4] += w;
         }
 }
@@ -204,12 +199,12 @@ static struct grid draw_at(const struct frame *f, const struct slice *s, double 
     struct grid source = grid_new(-m, -m, width + m, height + m, 5);
     struct grid out = grid_new(-MARGIN, -MARGIN, width + MARGIN, height + MARGIN, 5);
     if (kind == BEHIND) {
-        add_sources(f, s, &f->behind, level ? level - 1 : 0, kind, 0, !level, &source);
-        add_sources(f, s, &f->beyond, level ? level - 1 : 0, kind, 0, !level, &source);
+        layers_reference_add(f, s, &f->behind, level ? level - 1 : 0, kind, 0, !level, &source);
+        layers_reference_add(f, s, &f->beyond, level ? level - 1 : 0, kind, 0, !level, &source);
     } else {
-        add_sources(f, s, &f->seen, level, kind, light, 0, &source);
+        layers_reference_add(f, s, &f->seen, level, kind, light, 0, &source);
         if (kind == SEEN)
-            add_sources(f, s, &f->mixed, level, BEHIND, 0, 0, &source);
+            layers_reference_add(f, s, &f->mixed, level, BEHIND, 0, 0, &source);
     }
     if (f->aperture.cat_eye > 0)
         gather_cut(f, &shape, s->own < 0 ? -1 : 1, level, &source, &out);
@@ -220,13 +215,12 @@ static struct grid draw_at(const struct frame *f, const struct slice *s, double 
     return out;
 }
 
-static struct grid draw(const struct frame *f, const struct slice *s, int level, enum kind kind, int light)
+struct grid layers_reference_draw(const struct frame *f, const struct slice *s, int level, enum kind kind, int light)
 {
     return draw_at(f, s, s->own, level, kind, light);
 }
 
-// The value of a grid at a place of the next finer level.
-static double up(const struct grid *g, int c, int x, int y)
+double layers_reference_up(const struct grid *g, int c, int x, int y)
 {
     const int xa = x >= 0 ? x / 2 : -((1 - x) / 2), ya = y >= 0 ? y / 2 : -((1 - y) / 2);
     const int xb = x - 2 * xa ? xa + 1 : xa - 1, yb = y - 2 * ya ? ya + 1 : ya - 1;
@@ -243,7 +237,7 @@ static void refine(struct grid *g, const struct frame *f, int level, int to)
         for (int y = fine.y0; y < fine.y1; y++)
             for (int x = fine.x0; x < fine.x1; x++)
                 for (int c = 0; c < g->n; c++)
-                    at(&fine, x, y)[c] = up(g, c, x, y);
+                    at(&fine, x, y)[c] = layers_reference_up(g, c, x, y);
         free(g->v);
         *g = fine;
     }
@@ -264,11 +258,11 @@ static struct grid stack_new(const struct frame *f, int level)
     return g;
 }
 
-// Put sums under a stack; part receives how much of them is visible. Visible samples before the focus hide others;
+// Put sums under a stack. Visible samples before the focus hide others;
 // those behind it belong to surfaces of which other parts are hidden.
 enum sums { HIDING, WITH_HIDDEN, HELD_BACK, HIDDEN };
 
-static void put_under(struct grid *stack, const struct grid *sums, enum sums kind, struct grid *part)
+static void put_under(struct grid *stack, const struct grid *sums, enum sums kind)
 {
     for (int y = stack->y0; y < stack->y1; y++)
         for (int x = stack->x0; x < stack->x1; x++) {
@@ -282,59 +276,23 @@ static void put_under(struct grid *stack, const struct grid *sums, enum sums kin
                 s[c] += k * v[c];
             s[OPEN] = fmax(0, s[OPEN] - k * v[4]);
             s[BEHIND_OPEN] -= kind == HIDING ? 0 : fmin(v[4], s[BEHIND_OPEN]);
-            if (part)
-                at(part, x, y)[0] = k;
         }
 }
 
-// Add the shares with radii between a slice and its neighbours to the light, at full resolution, where the slice is
-// visible. Between slices of full resolution and others there are no additional radii.
-static void put_light(const struct frame *f, const struct slice *s, const struct grid *part, struct grid *light)
+// Put one slice into its stack.
+static void put_slice(const struct frame *f, const struct slice *s, struct grid *stack)
 {
-    const struct hf_aperture_params *a = &f->aperture;
-    const int most = a->blades || a->ring > 0 || a->picture ? 1 : 4;
-    double radius[9];
-    int count = 0;
-    for (int side = 0; side < 2; side++) {
-        const double next = side ? s->after : s->before;
-        const int parts = isfinite(next) && level_of(f, next) ? most : 1;
-        for (int i = 0; i < parts; i++)
-            radius[count++] =
-                side ? s->own + (i ? (next - s->own) * i / parts : 0) : next + (i ? (s->own - next) * i / parts : 0);
-    }
-    radius[count] = s->after;
-    for (int i = 1; i < count; i++) {
-        const struct slice t = {radius[i - 1], radius[i], radius[i + 1], {0}};
-        struct grid shine = draw(f, &t, 0, SHINE, 0);
-        for (int y = 0; y < f->height; y++)
-            for (int x = 0; x < f->width; x++)
-                for (int c = 0; c < 3; c++)
-                    at(light, x, y)[c] += part_of(s, t.own) * up(part, 0, x, y) * at(&shine, x, y)[c];
-        free(shine.v);
-    }
-}
-
-// Put one slice into its stack. light: the stack's highlights at full resolution, times lift if that is not NULL.
-static void put_slice(const struct frame *f, const struct slice *s, struct grid *stack, struct grid *light,
-                      const struct grid *lift)
-{
-    const int level = level_of(f, s->own), finest = level ? 1 : 0, lit = f->highlights && level;
-    struct grid sums = draw(f, s, level, SEEN, lit);
-    struct grid part = grid_new(stack->x0, stack->y0, stack->x1, stack->y1, 1);
+    const int level = layers_reference_level_of(f, s->own), finest = level ? 1 : 0;
+    struct grid sums = layers_reference_draw(f, s, level, SEEN, f->highlights && level);
     refine(&sums, f, level, finest);
-    put_under(stack, &sums, level ? s->own < 0 ? HIDING : WITH_HIDDEN : s->own > 0 ? HELD_BACK : WITH_HIDDEN, &part);
+    put_under(stack, &sums, level ? s->own < 0 ? HIDING : WITH_HIDDEN : s->own > 0 ? HELD_BACK : WITH_HIDDEN);
     free(sums.v);
-    for (int i = 0; lift && i < (part.x1 - part.x0) * (part.y1 - part.y0); i++)
-        part.v[i] *= lift->v[i];
-    if (lit)
-        put_light(f, s, &part, light);
-    free(part.v);
     if (layers_reference_levels(f) && s->hidden[0] < s->hidden[1]) {
         const struct slice behind = {s->hidden[0], s->own, s->hidden[1], {0}};
         const int coarse = level > 1 ? level : level == 0 && fabs(s->own) < 2 ? 0 : 1;
-        struct grid hidden = draw(f, &behind, coarse, BEHIND, 0);
+        struct grid hidden = layers_reference_draw(f, &behind, coarse, BEHIND, 0);
         refine(&hidden, f, coarse, finest);
-        put_under(stack, &hidden, HIDDEN, NULL);
+        put_under(stack, &hidden, HIDDEN);
         free(hidden.v);
     }
 }
@@ -405,43 +363,51 @@ static void put_together(const struct frame *f, struct picture *out)
     struct slice *s;
     const int count = slices_new(f, &s);
     struct grid near = stack_new(f, 1), far = stack_new(f, 1), middle = stack_new(f, 0);
-    struct grid light[2] = {grid_new(0, 0, f->width, f->height, 3), grid_new(0, 0, f->width, f->height, 3)};
-    int i = 0;
-    for (; i < count && s[i].own < 0 && level_of(f, s[i].own); i++)
-        put_slice(f, &s[i], &near, &light[0], NULL);
+    int i = 0, first;
+    for (; i < count && s[i].own < 0 && layers_reference_level_of(f, s[i].own); i++)
+        put_slice(f, &s[i], &near);
+    struct grid light[2] = {layers_reference_lights(f, s, count, 0, i, NULL)};
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++) {
             double *m = at(&middle, x, y);
             for (int c = 0; c < 5; c++)
-                m[c] = up(&near, c, x, y) + (c < 3 ? at(&light[0], x, y)[c] : 0);
-            m[OPEN] = fmax(0, 1 - m[4]);
-            m[BEHIND_OPEN] = up(&near, BEHIND_OPEN, x, y);
+                m[c] = layers_reference_up(&near, c, x, y);
+            m[OPEN] = fmax(0, 1 - m[4] - at(&light[0], x, y)[4]);
+            m[BEHIND_OPEN] = layers_reference_up(&near, BEHIND_OPEN, x, y);
         }
-    for (; i < count && !level_of(f, s[i].own); i++) {
+    for (; i < count && !layers_reference_level_of(f, s[i].own); i++) {
         // A part of the near coverage is withheld from visible samples behind the focus.
         const double part = f->hidden ? (f->patterns ? 0.75 : 0.25) : 0;
         for (int p = 0; s[i].own == 0 && p < f->width * f->height; p++) {
             double *m = at(&middle, p % f->width, p / f->width);
             m[HELD] = part * (1 - m[OPEN]);
         }
-        put_slice(f, &s[i], &middle, &light[1], NULL);
+        put_slice(f, &s[i], &middle);
     }
     struct grid lift = grid_new(far.x0, far.y0, far.x1, far.y1, 1);
     cover(f, &s[i - 1], &far, &lift);
+    first = i;
     for (; i < count; i++)
-        put_slice(f, &s[i], &far, &light[1], &lift);
+        put_slice(f, &s[i], &far);
+    light[1] = layers_reference_lights(f, s, count, first, count, &lift);
     for (int y = far.y0; y < far.y1; y++)
         for (int x = far.x0; x < far.x1; x++)
             for (int c = 0; c < 5; c++)
                 at(&far, x, y)[c] *= at(&lift, x, y)[0];
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++) {
-            const double *m = at(&middle, x, y), a = up(&far, 4, x, y),
-                         g = fmax(0, 1 - m[4]) / fmax(a, f->hidden ? 0.5 : 1e-3);
+            // The middle stack leaves light as much as it leaves of what the near one leaves. Sums fill what light leaves.
+            const double *m = at(&middle, x, y), *l[2] = {at(&light[0], x, y), at(&light[1], x, y)};
+            const double a = layers_reference_up(&far, 4, x, y), w = fmin(m[4] + l[0][4], 1),
+                         n = fmin(layers_reference_up(&near, 4, x, y) + l[0][4], 1),
+                         left = fmin(fmax(1 - (w - n) / fmax(1 - n, 1.0 / 64), 0), 1), lit = l[0][4] + left * l[1][4],
+                         g = fmax(1 - m[4] - lit, 0) / fmax(fmax(a, (f->hidden ? 0.5 : 1e-3) - l[1][5]), 1e-30),
+                         sum = m[4] + g * a;
             for (int c = 0; c < f->channels; c++) {
-                const double back = up(&far, c, x, y) + (c < 3 ? at(&light[1], x, y)[c] : 0);
-                if (m[4] + g * a > 1e-30)
-                    out->plane[c][y * f->width + x] = (float)((m[c] + g * back) / (m[4] + g * a));
+                const double own = sum > 1e-30 ? (m[c] + g * layers_reference_up(&far, c, x, y)) / sum
+                                               : (double)f->colour->plane[c][y * f->width + x];
+                if (sum > 1e-30 || lit > 0)
+                    out->plane[c][y * f->width + x] = (float)(fmax(1 - lit, 0) * own + l[0][c] + left * l[1][c]);
             }
         }
     free(near.v);

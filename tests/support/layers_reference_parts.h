@@ -43,6 +43,13 @@ enum { WEIGHT = 4, RADIUS, SHARE, SAMPLE };
 // Around the levels' grids, so that upsampling has neighbours.
 enum { MARGIN = 8 };
 
+struct slice {
+    double before, own, after;
+    double hidden[2];  // radii before and after for hidden samples; equal: the slice has none
+};
+
+enum kind { SEEN, BEHIND, SHINE };
+
 struct frame {
     const struct picture *colour;
     const float *radius;
@@ -53,6 +60,7 @@ struct frame {
     double wide, half, quarter, low, high;
     double shift;                             // relative change of the radius behind the focus (chromatic aberration)
     int turned;                               // in front of the focus: the aperture by half a turn
+    const int *tile;                          // column and row of the tile whose shares alone are drawn, or NULL
     int plane;                                // channel of a coloured aperture picture
     struct grid seen, mixed, behind, beyond;  // samples
 };
@@ -106,5 +114,22 @@ void layers_reference_patterns(const struct frame *f, const struct grid *quads, 
 // How much of a pixel lies before a radius: of what is seen, and of what is behind a mixed edge.
 double layers_reference_before(const struct frame *f, int x, int y, double radius);
 int layers_reference_levels(const struct frame *f);
+
+// (layers_reference.c)
+int layers_reference_level_of(const struct frame *f, double r);
+double layers_reference_part_of(const struct slice *s, double r);
+// Add the samples of a set that belong to a slice to the sources of a level, `apart` times half the resolution of theirs. light:
+// without their shares. quads: the samples of quads, as those of pixels.
+void layers_reference_add(const struct frame *f, const struct slice *s, const struct grid *set, int apart,
+                          enum kind kind, int light, int quads, struct grid *to);
+// A slice's sums of one kind at a level.
+struct grid layers_reference_draw(const struct frame *f, const struct slice *s, int level, enum kind kind, int light);
+// The value of a grid at a place of the next finer level.
+double layers_reference_up(const struct grid *g, int c, int x, int y);
+
+// The highlights of slices `from` to `end`, which lie on one side of the focus, as far as all that is nearer and has no full
+// resolution leaves them: colours, weight, and the weight if nothing were before them (layers_reference_lights.c). lift: the factor for those of the first slice behind the focus, or NULL.
+struct grid layers_reference_lights(const struct frame *f, const struct slice *s, int count, int from, int end,
+                                    const struct grid *lift);
 
 #endif

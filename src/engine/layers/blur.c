@@ -16,10 +16,9 @@ void hf_layers_weigh_c(const struct hf_slice *s, const float *const in[6], const
             // A sample without weight has no defined radius and colour.
             if (!(weight > 0 && r > s->before && r < s->after))
                 continue;
-            const float shown = part * s->scale;
-            const float w = shown * weight, v = share ? shown * (weight - share[at]) : w;
+            const float shown = part * s->scale, w = shown * (share ? weight - share[at] : weight);
             for (int c = 0; c < channels; c++)
-                sum[c] = sum[c] + (c < 3 ? v : w) * in[c][at];
+                sum[c] = sum[c] + w * in[c][at];
             sum[4] = sum[4] + w;
         }
         any[x / 16] |= sum[4] > 0;

@@ -37,10 +37,9 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
             const vf a = vf_mul(vf_sub(r2, before_square), before_scale);
             const vf b = vf_fnma(vf_sub(r2, square), after_scale, vf_set1(1));
             const vf shown = vf_mul(vf_select(vf_lt(r, radius), a, b), scale);
-            const vf w = vf_mul(shown, weight);
-            const vf v = share ? vf_mul(shown, vf_sub(weight, vf_load(share + at))) : w;
+            const vf w = vf_mul(shown, share ? vf_sub(weight, vf_load(share + at)) : weight);
             for (int c = 0; c < channels; c++)
-                sum[c] = vf_select(inside, vf_fma(c < 3 ? v : w, vf_load(in[c] + at), sum[c]), sum[c]);
+                sum[c] = vf_select(inside, vf_fma(w, vf_load(in[c] + at), sum[c]), sum[c]);
             sum[4] = vf_add_where(inside, w, sum[4]);
         }
         any[x / 16] |= (uint8_t)vm_any(vf_gt(sum[4], vf_zero()));

@@ -31,7 +31,7 @@ static struct hf_tile_map take_map(struct hf_scratch *m, int columns, int rows, 
 
 void hf_layers_place_sources(struct hf_cell *c, struct hf_scratch *m)
 {
-    const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels, n = c->l->most_tiles;
+    const int width = c->columns * TILE, channels = c->l->channels, n = c->l->most_tiles;
     const int wide = width + 2 * n * TILE + 2 * AROUND;
     const size_t words = (size_t)(4 * c->l->words + c->l->share_words);
     c->present = (uint64_t *)hf_layers_take(m, 2 * words * (size_t)(c->rows + 2 * n), 0);
@@ -42,14 +42,24 @@ void hf_layers_place_sources(struct hf_cell *c, struct hf_scratch *m)
     c->source.channel = wide;
     c->source.row = (ptrdiff_t)wide * (channels + 1);
     c->source.at = hf_layers_take(m, (size_t)c->source.row * TILE, n * TILE + AROUND);
-    for (int i = 0; i < (c->l->set.highlights ? c->l->parts : 0); i++) {
-        c->shine[i].shone = take_map(m, c->columns, c->rows, 1);
-        c->shine[i].sum = take_window(m, width, height, 3);
-    }
     c->any = (uint8_t *)hf_layers_take(m, (size_t)wide / 16 / sizeof(float) + 1, 0);
     for (int i = 0; i < 6; i++)
         c->line[i] = hf_layers_take(m, (size_t)wide, 0);
     c->shape = hf_layers_take(m, hf_layers_shape_floats(c->l, c->columns, c->rows), 0);
+}
+
+// Place what highlights take.
+static void place_lights(struct hf_cell *c, struct hf_scratch *m)
+{
+    const int width = c->columns * TILE, height = c->rows * TILE;
+    if (!c->l->set.highlights)
+        return;
+    c->shone = take_map(m, c->columns, c->rows, 1);
+    c->shine = take_window(m, width, height, c->l->channels + 1);
+    for (int i = 0; i < 2; i++)
+        c->light[i] = take_window(m, width, height, c->l->channels + 2);
+    c->cut_off = hf_layers_take(m, hf_layers_cut_floats(c), 0);
+    c->cover = hf_layers_take(m, hf_layers_cover_floats(c), 0);
 }
 
 // Place a cell's scratch in memory; returns how many floats it takes.
@@ -58,6 +68,7 @@ static size_t place(struct hf_cell *c, float *memory)
     struct hf_scratch m = {.memory = memory};
     const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels;
     hf_layers_place_sources(c, &m);
+    place_lights(c, &m);
     struct hf_tile_map *const maps[] = {&c->near, &c->far, &c->middle, &c->begun, &c->lit[0], &c->lit[1], &c->covered};
     for (int i = 0; i < 7; i++)
         *maps[i] = take_map(&m, c->columns, c->rows, 1);
@@ -66,15 +77,15 @@ static size_t place(struct hf_cell *c, float *memory)
     for (int i = 0; i < 3; i++)
         c->stack[i] = take_window(&m, i == MIDDLE ? width : width / 2, i == MIDDLE ? height : height / 2,
                                   channels + (i == MIDDLE ? 4 : 3));
-    for (int i = 0; i < 2; i++)
-        c->light[i] = take_window(&m, width, height, 3);
-    const struct hf_window part = take_window(&m, width / 2, height / 2, 1);
-    c->part = part.at;
-    c->part_row = part.row;
-    c->lift = take_window(&m, width / 2, height / 2, 1).at;
+    const struct hf_window lift = take_window(&m, width / 2, height / 2, 1);
+    c->lift = lift.at;
+    c->lift_row = lift.row;
     c->none = hf_layers_take(&m, (size_t)width + AROUND, 0);
+    c->whole = hf_layers_take(&m, (size_t)width + AROUND, 0);
     for (int i = 0; i < 5; i++)
         c->row[i] = hf_layers_take(&m, (size_t)width + AROUND, 0);
+    for (int i = 0; i < 6; i++)
+        c->light_row[i] = hf_layers_take(&m, (size_t)width + AROUND, 0);
     return m.used;
 }
 
@@ -98,23 +109,24 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     hf_layers_find_present(&c);
     hf_layers_mark_plain(&c);
     memset(c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
-    // Where a slice does not reach, its highlights are 0, so any visible part will do.
-    memset(c.part - MARGIN * c.part_row - LEFT, 0,
-           sizeof(float) * (size_t)c.part_row * (size_t)(c.rows * TILE / 2 + 2 * MARGIN));
     struct hf_tile_map *const maps[] = {&c.near, &c.far, &c.middle, &c.begun, &c.lit[0], &c.lit[1], &c.covered};
     for (int i = 0; i < 7; i++)
         for (int ty = -1; ty <= c.rows; ty++)
             memset(hf_layers_map_at(maps[i], -1, ty), 0, (size_t)c.columns + 2);
     int i = 0;
     memset(c.none, 0, sizeof(float) * (size_t)(c.columns * TILE + AROUND));
+    for (int x = 0; x < c.columns * TILE; x++)
+        c.whole[x] = 1;
     while (i < l->slices && l->slice[i].level > 0 && l->slice[i].radius < 0 && !hf_stopped(l->stop))
         hf_layers_put_slice(&c, i++);
+    hf_layers_draw_lights(&c, NEAR);
     hf_layers_begin_middle(&c);
     for (; i < l->slices && !hf_stopped(l->stop); i++) {
         hf_layers_put_slice(&c, i);
         if (i == l->last)
             hf_layers_cover(&c);
     }
+    hf_layers_draw_lights(&c, FAR);
     if (!hf_stopped(l->stop))
         hf_layers_finish_cell(&c, out, stride);
     if (l->set.views && l->levels)

@@ -15,7 +15,7 @@ void hf_layers_up_c(const float *a, const float *b, int n, float *out)
 }
 
 void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float *const in[5], enum hf_layers_sums sums,
-                       int n, float *part)
+                       int n)
 {
     for (int x = 0; x < n; x++) {
         const float v = in[4][x], open = to->open[x],
@@ -32,8 +32,6 @@ void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float 
             to->held[x] = to->held[x] - hold;
         if (sums != HF_SUMS_HIDING)
             to->behind[x] = to->behind[x] - v > 0 ? to->behind[x] - v : 0;
-        if (part)
-            part[x] = k;
     }
 }
 
@@ -43,18 +41,22 @@ void hf_layers_light_c(const float *part, float amount, const float *in, int n, 
         out[x] = part[x] * amount * in[x] + out[x];
 }
 
-void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
-                        int channels, float faint, int n, float *const out[4])
+void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[5], const float *const light[6],
+                        const float *const own[4], int channels, float faint, int n, float *const out[4])
 {
     for (int x = 0; x < n; x++) {
-        const float w = near->weight[x], left = 1 - w;
+        const float w = near->weight[x], lit = light ? light[4][x] : 0;
+        // What the middle stack and light leave; where there is much light, less needs to be there beside it.
+        const float open = light ? 1 - w - lit : 1 - w, left = open > 0 ? open : 0;
+        const float least = light ? faint - light[5][x] : faint, enough = least > 1e-30f ? least : 1e-30f;
         const float a = far ? far[4][x] : 0;
-        const float g = far ? (left > 0 ? left : 0) / (a > faint ? a : faint) : 0;
-        const float sum = w + g * a;
+        const float g = far ? left / (a > enough ? a : enough) : 0;
+        const float sum = w + g * a, rest = lit < 1 ? 1 - lit : 0;
         for (int c = 0; c < channels; c++) {
             const float top = far ? near->colour[c][x] + g * far[c][x] : near->colour[c][x];
             // A pixel that nothing covers, with nothing filled in behind it, stays as it was.
             float v = sum > 1e-30f ? top / sum : own[c][x];
+            v = light ? rest * v + light[c][x] : v;
             if (c == 3)
                 v = fabsf(v - 1) < HF_LAYERS_OPAQUE ? 1 : v;
             out[c][x] = v == own[c][x] ? own[c][x] : v;

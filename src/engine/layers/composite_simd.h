@@ -27,13 +27,13 @@ HF_INLINE int layers_is_any(const float *const in[5], const int channels, int x)
     return vm_any(any);
 }
 
-// Most of a slice's plane is 0. Such vectors are skipped unless the caller wants the visible part.
+// Most of a slice's plane is 0. Such vectors are skipped.
 HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, const float *const in[5],
-                               const enum hf_layers_sums sums, int n, float *part)
+                               const enum hf_layers_sums sums, int n)
 {
     const vf tiny = vf_set1(1e-30f);
     for (int x = 0; x < n; x += VF_N) {
-        if (!part && !layers_is_any(in, channels, x))
+        if (!layers_is_any(in, channels, x))
             continue;
         const vf v = vf_load(in[4] + x), open = vf_load(to->open + x);
         const vf left = sums == HF_SUMS_HIDING ? vf_zero() : vf_load(to->behind + x);
@@ -49,28 +49,26 @@ HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels
         vf_store(to->open + x, vf_max(vf_fnma(k, v, open), vf_zero()));
         if (sums != HF_SUMS_HIDING)
             vf_store(to->behind + x, vf_max(vf_sub(left, v), vf_zero()));
-        if (part)
-            vf_store(part + x, k);
     }
 }
 
 HF_INLINE void layers_blend_sums(const struct hf_stack_row *to, const int channels, const float *const in[5],
-                                 enum hf_layers_sums sums, int n, float *part)
+                                 enum hf_layers_sums sums, int n)
 {
     if (sums == HF_SUMS_HIDING)
-        layers_blend_of(to, channels, in, HF_SUMS_HIDING, n, part);
+        layers_blend_of(to, channels, in, HF_SUMS_HIDING, n);
     else if (sums == HF_SUMS_SEEN)
-        layers_blend_of(to, channels, in, HF_SUMS_SEEN, n, part);
+        layers_blend_of(to, channels, in, HF_SUMS_SEEN, n);
     else if (sums == HF_SUMS_HELD)
-        layers_blend_of(to, channels, in, HF_SUMS_HELD, n, part);
+        layers_blend_of(to, channels, in, HF_SUMS_HELD, n);
     else
-        layers_blend_of(to, channels, in, HF_SUMS_HIDDEN, n, part);
+        layers_blend_of(to, channels, in, HF_SUMS_HIDDEN, n);
 }
 
 static void layers_blend_simd(const struct hf_stack_row *to, int channels, const float *const in[5],
-                              enum hf_layers_sums sums, int n, float *part)
+                              enum hf_layers_sums sums, int n)
 {
-    HF_WITH_CHANNELS(channels, layers_blend_sums(to, CHANNELS, in, sums, n, part));
+    HF_WITH_CHANNELS(channels, layers_blend_sums(to, CHANNELS, in, sums, n));
 }
 
 // The last addition is never fused, as in the plain C.
@@ -84,19 +82,22 @@ static void layers_light_simd(const float *part, float amount, const float *in, 
     }
 }
 
-static void layers_finish_simd(const struct hf_stack_row *near, const float *const far[5], const float *const own[4],
-                               int channels, float faint, int n, float *const out[4])
+static void layers_finish_simd(const struct hf_stack_row *near, const float *const far[5], const float *const light[6],
+                               const float *const own[4], int channels, float faint, int n, float *const out[4])
 {
     const vf tiny = vf_set1(1e-30f), one = vf_set1(1);
     for (int x = 0; x < n; x += VF_N) {
-        const vf w = vf_load(near->weight + x);
+        const vf w = vf_load(near->weight + x), lit = light ? vf_load(light[4] + x) : vf_zero();
+        const vf open = vf_sub(one, w), left = vf_max(light ? vf_sub(open, lit) : open, vf_zero());
+        const vf enough = light ? vf_max(vf_sub(vf_set1(faint), vf_load(light[5] + x)), tiny) : vf_set1(faint);
         const vf a = far ? vf_load(far[4] + x) : vf_zero();
-        const vf g = far ? vf_div(vf_max(vf_sub(one, w), vf_zero()), vf_max(a, vf_set1(faint))) : vf_zero();
-        const vf sum = vf_fma(g, a, w);
+        const vf g = far ? vf_div(left, vf_max(a, enough)) : vf_zero();
+        const vf sum = vf_fma(g, a, w), rest = vf_max(vf_sub(one, lit), vf_zero());
         for (int c = 0; c < channels; c++) {
             const vf top = vf_load(near->colour[c] + x), was = vf_load(own[c] + x);
             vf v = vf_div(far ? vf_fma(g, vf_load(far[c] + x), top) : top, sum);
             v = vf_select(vf_lt(tiny, sum), v, was);
+            v = light ? vf_fma(rest, v, vf_load(light[c] + x)) : v;
             if (c == 3)
                 v = vf_select(vf_lt(vf_abs(vf_sub(v, one)), vf_set1(HF_LAYERS_OPAQUE)), one, v);
             vf_store(out[c] + x, vf_select(vf_eq(v, was), was, v));

@@ -166,6 +166,15 @@ static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int l
     }
 }
 
+// Clear row y of tile `like` again, whose samples were built only to be repeated in the tiles from tx on.
+static void drop_tile(const struct hf_cell *c, const struct hf_build *b, int like, int tx, int y)
+{
+    const int size = TILE >> b->s->level, n = tx > like ? hf_min((tx - like) * size, size + 16) : size;
+    *hf_layers_map_at(&c->filled, like, y / 2) = 0;
+    for (int i = b->first; i < b->channels; i++)
+        memset(source_at(c, i, like * size, y), 0, sizeof(float) * (size_t)n);
+}
+
 static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty, int from, int y0, int y1)
 {
     const int size = TILE >> b->s->level;
@@ -176,8 +185,11 @@ static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty,
         const int first = within(tx, wide), last = within(end - 1, wide);
         for (int y = y0; y < y1; y++) {
             build_run(c, b, first, last + 1, ty, from, y);
-            repeat_tile(c, b, first, tx, first, y);
-            repeat_tile(c, b, last, last + 1, end, y);
+            repeat_tile(c, b, first, tx, hf_min(first, end), y);
+            repeat_tile(c, b, last, hf_max(last + 1, tx), end, y);
+            // The run may lie beyond the last tile that has samples, on one side of the frame.
+            if (first >= end || last < tx)
+                drop_tile(c, b, first, tx, y);
         }
     }
 }

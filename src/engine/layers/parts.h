@@ -30,20 +30,10 @@ enum { WHOLE = 1, DULL = 2 };
 // resolution.
 enum hf_kind { HF_KIND_SEEN, HF_KIND_HIDDEN, HF_KIND_SHARES };
 
-// Channels of light. Alpha has none: it goes with the coverage, or opaque surfaces would not stay opaque.
-enum { LIT = 3 };
-
 // The sets of samples for which each tile marks its slices.
 enum hf_marks { HF_MARKS_SEEN, HF_MARKS_MIXED, HF_MARKS_HIDDEN, HF_MARKS_BEYOND, HF_MARKS_SHARES };
 
 enum { NEAR, FAR, MIDDLE };
-
-// The blurred shares of one radius. Shares between two slices belong to both; the second slice finds them here.
-struct hf_shine {
-    int number, any;           // index of the radius plus 1, 0 at first; whether there are any shares
-    struct hf_tile_map shone;  // tiles that the blur reaches
-    struct hf_window sum;
-};
 
 struct hf_cell {
     const struct hf_layers *l;
@@ -61,17 +51,20 @@ struct hf_cell {
     int opened[2];                         // the near and the far stack hold something
     int covering;                          // the far stack is somewhere not fully open at its start
     struct hf_window source, sum[HF_LAYERS_COARSEST + 1];
-    struct hf_shine shine[HF_LAYERS_PARTS];
+    struct hf_tile_map shone;             // tiles that the blurred shares of one radius reach
+    struct hf_window shine;               // their sums
     struct hf_window stack[3], light[2];  // near, far and middle; highlights of near and far
     float *line[6];                       // sums at full resolution before they are folded to the slice's
     float *row[5];                        // upsampled
-    float *none;                          // a row of zeros
+    float *light_row[6];                  // light as far as it is seen
+    float *none, *whole;                  // rows of zeros and of ones
     uint8_t *any;                         // for each 16 pixels of a run: whether the slice has samples there
-    float *part;                          // how much of a slice is visible, half resolution
     struct hf_tile_map covered;           // tiles where the far stack is not fully open at its start
-    float *lift;  // 1 / that openness, the factor for the far stack's sums; rows as those of part
-    ptrdiff_t part_row;
-    float *shape;  // scratch of shapes
+    float *lift;                          // 1 / that openness, the factor for the far stack's sums
+    ptrdiff_t lift_row;
+    float *cover;    // the coverage of a slice
+    float *cut_off;  // what is cut from the discs of tiles with lamps
+    float *shape;    // scratch of shapes
 };
 
 // A span of columns of a level.
@@ -123,6 +116,10 @@ void hf_layers_mark_plain(const struct hf_cell *c);
 void hf_layers_find_present(struct hf_cell *c);
 // Mark the tiles around the cell that have samples of the slice. Returns 0 if there are none.
 int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind);
+// Mark one tile alone, if it has shares of a radius. Returns 0 if it has none.
+int hf_layers_use_tile(struct hf_cell *c, int tx, int ty, int shine);
+// The tiles around the cell that have samples: those of the frame and one beyond it on each side, the last one included.
+struct hf_rect hf_layers_tiles_with_samples(const struct hf_cell *c);
 // Mark the tiles that the blur of the used tiles reaches, in the cell and one tile around it.
 int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to);
 // The next run of tiles with any of the bits, from *tx up to `end`. Moves *tx to its first tile and returns its end;
@@ -167,14 +164,27 @@ void hf_layers_begin_shape(const struct hf_cell *c, const struct hf_slice *s);
 void hf_layers_draw_shape(const struct hf_cell *c, const struct hf_build *b, const float *in, int y, int x0, int x1,
                           const struct hf_window *to);
 
+// lights.c
+// Floats for the coverage of a slice around a cell.
+size_t hf_layers_cover_floats(const struct hf_cell *c);
+// Floats for what is cut from discs.
+size_t hf_layers_cut_floats(const struct hf_cell *c);
+// Draw the highlights on one side of the focus, NEAR or FAR, with their coverage, as they shine through all that is in front of
+// them but the middle stack. Call for FAR after the last slice.
+void hf_layers_draw_lights(struct hf_cell *c, int stack);
+// Add what light in front of the focus covers, in a row of some tiles.
+void hf_layers_add_near_cover(const struct hf_cell *c, int tx, int end, int y, float *out);
+// The light of a tile's row as far as it is seen: colours, then at 4 what it covers, and at 5 what that behind the focus would
+// cover if nothing were before it.
+void hf_layers_light_row(const struct hf_cell *c, int tx, int y, float *const out[6]);
+
 // together.c
-// Call `put` for each radius of shares that belong to a slice, drawn in `shine`, with the part of them that belongs to it.
-typedef void hf_layers_putter(struct hf_cell *c, const struct hf_shine *shine, int slice, float amount);
-void hf_layers_each_light(struct hf_cell *c, int slice, hf_layers_putter *put);
 void hf_layers_put_slice(struct hf_cell *c, int i);
 // Call before the first slice of the far stack: the part of shared samples that the middle stack holds closes the far
 // one.
 void hf_layers_cover(struct hf_cell *c);
+// Upsample a row of one plane of a half-resolution stack: colours, then the weight.
+void hf_layers_raise(const struct hf_cell *c, int stack, int plane, int x, int n, int y, float *out);
 // The near stack goes into the middle stack, in front of all else.
 void hf_layers_begin_middle(const struct hf_cell *c);
 // Whether a tile has only sharp pixels and nothing else reaches it.

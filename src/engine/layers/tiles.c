@@ -149,6 +149,22 @@ int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind)
     return c->box.y0 < c->box.y1;
 }
 
+int hf_layers_use_tile(struct hf_cell *c, int tx, int ty, int shine)
+{
+    const struct hf_layers *l = c->l;
+    if (!(l->share_marks[(ptrdiff_t)tile_number(c, tx, ty) * l->share_words + shine / 64] >> shine % 64 & 1))
+        return 0;
+    c->box = (struct hf_rect){tx, ty, tx + 1, ty + 1};
+    *hf_layers_map_at(&c->used, tx, ty) = SEEN;
+    return 1;
+}
+
+struct hf_rect hf_layers_tiles_with_samples(const struct hf_cell *c)
+{
+    const int x = -c->x0 / TILE - 1, y = -c->y0 / TILE - 1;
+    return (struct hf_rect){x, y, x + c->l->columns + 1, y + c->l->rows + 1};
+}
+
 int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to)
 {
     const int reach = ((s->reach + 3) << s->level) + TILE - 1, by = reach / TILE;

@@ -29,7 +29,7 @@ static void refine(struct hf_cell *c, const struct hf_tile_map *touched, int lev
 }
 
 // Put the sums of a slice under what a stack holds.
-static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_sums sums, int keep_part)
+static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_sums sums)
 {
     const int finest = stack == MIDDLE ? 0 : 1, channels = c->l->channels;
     while (level > finest + 1)
@@ -50,10 +50,7 @@ static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_su
                         c->k->up(a + s.x0 / 2, a + s.x0 / 2 + (y & 1 ? from->row : -from->row), (s.x1 - s.x0) / 2,
                                  c->row[as]);
                 }
-                c->k->blend(&to, channels, in, sums, s.x1 - s.x0, keep_part ? c->part + y * c->part_row + s.x0 : NULL);
-                if (keep_part && stack == FAR && c->covering)
-                    for (int x = s.x0; x < s.x1; x++)
-                        c->part[y * c->part_row + x] *= c->lift[y * c->part_row + x];
+                c->k->blend(&to, channels, in, sums, s.x1 - s.x0);
             }
         }
 }
@@ -74,21 +71,6 @@ static void fill_tile(const struct hf_window *w, int channel, int tx, int y, flo
 }
 
 #define LEAST_OPEN (1.0f / 16)
-
-// Clear the light of tiles that have none yet.
-static void begin_light(const struct hf_cell *c, int stack, const struct hf_tile_map *shone)
-{
-    for (int ty = 0; ty < c->rows; ty++)
-        for (int tx = 0; tx < c->columns; tx++) {
-            uint8_t *lit = hf_layers_map_at(&c->lit[stack], tx, ty);
-            if (*lit || !*hf_layers_map_at(shone, tx, ty))
-                continue;
-            *lit = 1;
-            for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
-                for (int i = 0; i < LIT; i++)
-                    fill_tile(&c->light[stack], i, tx, y, 0);
-        }
-}
 
 // Clear the tiles of the middle stack that a slice is the first to touch.
 static void begin_tiles(const struct hf_cell *c)
@@ -121,7 +103,7 @@ static void begin_stack(struct hf_cell *c, int stack)
         for (int x = 0; x < n; x++)
             r.open[x] = r.behind[x] = 1;
         for (int x = 0; stack == FAR && x < n; x++)
-            c->lift[y * c->part_row - MARGIN + x] = 1;
+            c->lift[y * c->lift_row - MARGIN + x] = 1;
     }
 }
 
@@ -131,61 +113,6 @@ static void begin(struct hf_cell *c, int stack)
         begin_tiles(c);
     else
         begin_stack(c, stack);
-}
-
-// The part of a sample of radius r that belongs to a slice.
-static float part_of(const struct hf_slice *s, float r)
-{
-    const float square = r * r;
-    return r <= s->before || r >= s->after ? 0
-           : r < s->radius                 ? (square - s->before_square) * s->before_scale
-                                           : 1 - (square - s->square) * s->after_scale;
-}
-
-// Draw the shares of one radius at full resolution, unless the slice before has done so.
-static void draw_light(struct hf_cell *c, int number, struct hf_shine *shine)
-{
-    const struct hf_slice *wide = &c->l->shine[number];
-    const struct hf_build b = {.s = wide, .set = &c->samples->seen, .weight = c->samples->share, .channels = LIT};
-    if (shine->number == number + 1)
-        return;
-    shine->number = number + 1;
-    shine->any = hf_layers_mark_used(c, number, HF_KIND_SHARES) && hf_layers_mark_touched(c, wide, &shine->shone);
-    if (shine->any)
-        hf_layers_draw_slice(c, &b, &shine->shone, &shine->sum);
-}
-
-// Add shares of one radius to a stack's light where their slice is visible.
-static void put_light(struct hf_cell *c, const struct hf_shine *shine, int slice, float amount)
-{
-    const int stack = c->l->slice[slice].radius < 0 ? NEAR : FAR;
-    const struct hf_window *to = &c->light[stack];
-    begin_light(c, stack, &shine->shone);
-    for (int ty = 0; ty < c->rows && !hf_stopped(c->l->stop); ty++)
-        for (int tx = 0, end; (end = hf_layers_next_run(&shine->shone, &tx, ty, c->columns, 1)) > tx; tx = end)
-            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
-                const int x0 = tx * TILE, n = (end - tx) * TILE;
-                const float *a = c->part + (y >> 1) * c->part_row + (x0 >> 1);
-                c->k->up(a, a + (y & 1 ? c->part_row : -c->part_row), n / 2, c->row[0]);
-                for (int i = 0; i < LIT; i++) {
-                    const float *in = shine->sum.at + y * shine->sum.row + i * shine->sum.channel + x0;
-                    float *out = to->at + y * to->row + i * to->channel + x0;
-                    c->k->light(c->row[0], amount, in, n, out);
-                }
-            }
-}
-
-void hf_layers_each_light(struct hf_cell *c, int slice, hf_layers_putter *put)
-{
-    const struct hf_layers *l = c->l;
-    const int before = slice > 0 ? l->slice[slice - 1].shine : -1, own = l->slice[slice].shine,
-              end = slice + 1 < l->slices ? l->slice[slice + 1].shine : l->shines;
-    for (int i = before + 1; i < end && !hf_stopped(l->stop); i++) {
-        struct hf_shine *shine = &c->shine[i - (i < own ? before : own)];
-        draw_light(c, i, shine);
-        if (shine->any)
-            put(c, shine, slice, part_of(&l->slice[slice], l->shine[i].radius));
-    }
 }
 
 // At the slice in focus: set the visible coverage to withhold, a part of what the near slices cover.
@@ -226,11 +153,9 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .more = &c->samples->mixed};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
         begin(c, stack);
-        put_under(c, stack, s->level, sums_of(l, s, stack), shares);
+        put_under(c, stack, s->level, sums_of(l, s, stack));
         if (s->radius != 0)
             mark(c, &c->touched, reached);
-        if (shares)
-            hf_layers_each_light(c, i, put_light);
     }
     // Next to the focus, the border between visible and hidden samples must be as fine as the picture; at quads'
     // resolution a line would stay open.
@@ -246,7 +171,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .more = &c->samples->beyond};
         hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
         begin(c, stack);
-        put_under(c, stack, behind->level, HF_SUMS_HIDDEN, 0);
+        put_under(c, stack, behind->level, HF_SUMS_HIDDEN);
         mark(c, &c->touched, reached);
     }
 }
@@ -298,7 +223,7 @@ static void lift(const struct hf_cell *c, int whole)
             hf_layers_clip_rows(c, 1, ty, &y0, &y1);
             for (int y = y0; y < y1; y++) {
                 const struct hf_stack_row r = hf_layers_stack_at(c, FAR, s.x0, y);
-                float *by = c->lift + y * c->part_row + s.x0;
+                float *by = c->lift + y * c->lift_row + s.x0;
                 for (int x = 0; !whole && x < s.x1 - s.x0; x++)
                     by[x] = 1 / (r.open[x] > LEAST_OPEN ? r.open[x] : LEAST_OPEN);
                 for (int i = 0; whole && i < c->l->channels; i++)
@@ -336,28 +261,18 @@ static void copy_tile(const struct hf_cell *c, int tx, int ty, float *const out[
                    sizeof(float) * TILE);
 }
 
-// Upsample a row of one plane of a stack to full resolution.
-static void raise_plane(const struct hf_cell *c, int stack, int plane, int x, int n, int y, float *out)
+void hf_layers_raise(const struct hf_cell *c, int stack, int plane, int x, int n, int y, float *out)
 {
     const struct hf_window *w = &c->stack[stack];
     const float *a = w->at + (y >> 1) * w->row + plane * w->channel + (x >> 1);
     c->k->up(a, a + (y & 1 ? w->row : -w->row), n / 2, out);
 }
 
-// Upsample a row of a stack's colours and weight, and add its light.
+// Upsample a row of a stack's colours and weight.
 static void raise(const struct hf_cell *c, int stack, int x, int n, int y, float *const out[5])
 {
-    const struct hf_window *light = &c->light[stack];
     for (int i = 0; i <= c->l->channels; i++)
-        raise_plane(c, stack, i, x, n, y, out[i < c->l->channels ? i : 4]);
-    for (int tx = x / TILE, end; (end = hf_layers_next_run(&c->lit[stack], &tx, y / TILE, (x + n) / TILE, 1)) > tx;
-         tx = end)
-        for (int i = 0; i < LIT; i++) {
-            const float *in = light->at + y * light->row + i * light->channel + tx * TILE;
-            float *to = out[i] + tx * TILE - x;
-            for (int j = 0; j < (end - tx) * TILE; j++)
-                to[j] += in[j];
-        }
+        hf_layers_raise(c, stack, i, x, n, y, out[i < c->l->channels ? i : 4]);
 }
 
 void hf_layers_begin_middle(const struct hf_cell *c)
@@ -368,9 +283,11 @@ void hf_layers_begin_middle(const struct hf_cell *c)
                 const struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, tx * TILE, y);
                 float *const out[5] = {r.colour[0], r.colour[1], r.colour[2], r.colour[3], r.weight};
                 raise(c, NEAR, tx * TILE, (end - tx) * TILE, y, out);
+                memcpy(r.open, r.weight, sizeof(float) * (size_t)((end - tx) * TILE));
+                hf_layers_add_near_cover(c, tx, end, y, r.open);
                 for (int x = 0; x < (end - tx) * TILE; x++)
-                    r.open[x] = r.weight[x] < 1 ? 1 - r.weight[x] : 0;
-                raise_plane(c, NEAR, c->l->channels + 2, tx * TILE, (end - tx) * TILE, y, r.behind);
+                    r.open[x] = r.open[x] < 1 ? 1 - r.open[x] : 0;
+                hf_layers_raise(c, NEAR, c->l->channels + 2, tx * TILE, (end - tx) * TILE, y, r.behind);
                 memset(hf_layers_map_at(&c->begun, tx, ty), 1, (size_t)(end - tx));
             }
 }
@@ -378,25 +295,32 @@ void hf_layers_begin_middle(const struct hf_cell *c)
 // Tiles with the same state are finished together.
 static int state_of(const struct hf_cell *c, int tx, int ty)
 {
-    return *hf_layers_map_at(&c->far, tx, ty) | *hf_layers_map_at(&c->begun, tx, ty) << 1;
+    return *hf_layers_map_at(&c->far, tx, ty) | *hf_layers_map_at(&c->begun, tx, ty) << 1 |
+           (*hf_layers_map_at(&c->lit[NEAR], tx, ty) | *hf_layers_map_at(&c->lit[FAR], tx, ty)) << 2;
 }
 
 // Finish one row of a run of tiles.
 static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, float *const out[4])
 {
-    const int far = state & 1, channels = c->l->channels;
+    const int far = state & 1, lit = state & 4, channels = c->l->channels;
     struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, x, y);
     const float *own[6] = {NULL};
     hf_layers_planes_at(c->l, &c->samples->seen, c->samples->seen.weight, c->x0 + x, c->y0 + y, own);
-    if (!(state >> 1)) {
+    if (!(state & 2)) {
         for (int i = 0; i < channels; i++)
             r.colour[i] = c->none;
         r.weight = c->none;
     }
+    for (int i = 0; i < n && lit; i += TILE) {
+        float *to[6];
+        for (int k = 0; k < 6; k++)
+            to[k] = c->light_row[k] + i;
+        hf_layers_light_row(c, (x + i) / TILE, y, to);
+    }
     if (far)
         raise(c, FAR, x, n, y, c->row);
-    c->k->finish(&r, far ? (const float *const *)c->row : NULL, own, channels,
-                 c->l->set.hidden ? HF_LAYERS_FAINT : HF_LAYERS_FAINT_ALONE, n, out);
+    c->k->finish(&r, far ? (const float *const *)c->row : NULL, lit ? (const float *const *)c->light_row : NULL, own,
+                 channels, c->l->set.hidden ? HF_LAYERS_FAINT : HF_LAYERS_FAINT_ALONE, n, out);
 }
 
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride)

@@ -26,15 +26,11 @@ _Static_assert(COLUMNS *ROWS <= 32, "a bit for each tile");
 // then one surface alone loses 0.06 on `foliage`.
 #define FAINT (1.0f / 16)
 
-// Highlights are drawn whole, and views may miss what covers a pixel thinly: they count as if this much were covered.
-#define SHOWN 0.5f
-
 // Planes of a slice, under construction.
 struct plane {
     float *at;
     ptrdiff_t row, channel;
     int level, around;  // around: tiles on each side of the block
-    int lit, number;    // number: of its sums of light
     uint32_t tiles;     // a bit for each tile of the block that the slice reaches
 };
 
@@ -43,20 +39,18 @@ struct block {
     struct plane *plane;
     struct hf_view_plane *list;
     float *memory;                       // of planes
-    float *light[2];                     // sums of light and of seen light of all slices that have some
     float blend[ROWS + 1][COLUMNS + 1];  // how far views count at the corners of the tiles
-    // Of the block's pixels: means of the views as in hf_view_row, what a cat's eye leaves of them, and highlights.
-    float *near[5], *beyond[5], *total, *shone[3];
-    float *line;  // for softening light
+    // Of the block's pixels: means of the views as in hf_view_row, and what a cat's eye leaves of them.
+    float *near[5], *beyond[5], *total;
 };
 
-// How far light of radius 1 goes.
+// How far the blur of radius 1 goes.
 static double wide_of(const struct hf_layers *l)
 {
     return l->lens_reach * (1 + fabs((double)l->chromatic));
 }
 
-// How far a slice's light goes, in pixels.
+// How far a slice's blur goes, in pixels.
 static double radius_of(const struct hf_layers *l, int slice)
 {
     return fabs((double)l->slice[slice].radius) * wide_of(l);
@@ -73,10 +67,10 @@ static size_t shape_plane(const struct hf_layers *l, int slice, struct plane *p)
 {
     const double r = radius_of(l, slice);
     p->level = level_of(r);
-    // A displacement is rounded to a whole pixel, and light is spread by a pixel of the level.
+    // A displacement is rounded to a whole pixel.
     p->around = ((int)ceil(r) + 1 + (1 << p->level) + TILE - 1) / TILE;
     p->channel = WIDTH + 2 * p->around * TILE + SPARE;
-    p->row = p->channel * (l->channels + 2);
+    p->row = p->channel * (l->channels + 1);
     return (size_t)p->row * (size_t)((HEIGHT + 2 * p->around * TILE) >> p->level);
 }
 
@@ -94,16 +88,11 @@ static size_t place(struct block *b, float *memory)
     b->plane = (struct plane *)(void *)hf_layers_take(&m, (size_t)l->slices * sizeof *b->plane / sizeof(float), 0);
     b->list =
         (struct hf_view_plane *)(void *)hf_layers_take(&m, (size_t)l->slices * sizeof *b->list / sizeof(float), 0);
-    for (int i = 0; i < 2; i++)
-        b->light[i] = hf_layers_take(&m, l->set.highlights ? (size_t)l->slices * PIXELS : 0, 0);
     for (int i = 0; i < 5; i++) {
         b->near[i] = hf_layers_take(&m, PIXELS, 0);
         b->beyond[i] = hf_layers_take(&m, PIXELS, 0);
     }
-    for (int i = 0; i < 3; i++)
-        b->shone[i] = hf_layers_take(&m, PIXELS, 0);
     b->total = hf_layers_take(&m, PIXELS, 0);
-    b->line = hf_layers_take(&m, 2 * (WIDTH + 2 * ((size_t)HF_LAYERS_VIEWS_MOST + 2 * TILE)), 0);
     b->memory = hf_layers_take(&m, 0, 0);
     for (int i = 0; i < l->slices; i++) {
         struct plane p;
@@ -174,7 +163,7 @@ static int is_blended(const struct block *b, int tx, int ty)
 
 struct taker {
     struct plane *p;
-    int channels, light;  // light: the sum of the colours is added to the plane's light
+    int channels;
 };
 
 static void add_row(float *to, const float *in, int n, int level)
@@ -196,11 +185,9 @@ static void take_row(void *cookie, const float *in, ptrdiff_t channel, int x, in
         return;
     float *out = p->at + y * p->row + from * (1 << p->level);
     in += from - x;
-    p->lit |= t->light;
-    for (int c = 0; c < (t->light ? 3 : t->channels); c++)
-        add_row(out + (t->light ? t->channels + 1 : c + 1) * p->channel, in + c * channel, to - from, p->level);
-    if (!t->light)
-        add_row(out, in + t->channels * channel, to - from, p->level);
+    for (int c = 0; c < t->channels; c++)
+        add_row(out + (c + 1) * p->channel, in + c * channel, to - from, p->level);
+    add_row(out, in + t->channels * channel, to - from, p->level);
 }
 
 // A slice at the resolution that views need, of samples of pixels (finest 0) or of quads.
@@ -241,7 +228,7 @@ static int reach(struct block *b, int i, enum hf_kind kind, const struct hf_slic
     return tiles != 0;
 }
 
-// Gather what a slice's planes hold, but for its light: sums of samples.
+// Gather what a slice's planes hold: sums of samples, without their highlights.
 static void gather(struct block *b, int i, size_t *used)
 {
     const struct hf_layers *l = b->c.l;
@@ -273,30 +260,6 @@ static void gather(struct block *b, int i, size_t *used)
     }
 }
 
-// Of three channels, nine pixels and all views the largest samples must not overflow.
-#define LIGHT 0x1p-14f
-
-// Light of a slice is spread over 3 x 3 pixels, so that views miss none of it: it only says how much of the highlights,
-// which are drawn whole, can be seen.
-static void soften(const struct block *b, const struct plane *p)
-{
-    const int size = TILE >> p->level, first = -p->around * size, end = ROWS * size - first,
-              n = (int)p->channel - SPARE, step = 1 << p->level;
-    // The row before, unchanged, and a column of three summed up, with zeros beside it.
-    float *before = b->line, *sum = before + n + step;
-    memset(b->line, 0, sizeof(float) * (size_t)(2 * (n + step)));
-    for (int y = first; y < end; y++) {
-        float *at = p->at + y * p->row + (b->c.l->channels + 1) * p->channel - p->around * TILE;
-        for (int x = 0; x < n; x++) {
-            const float own = at[x] * LIGHT, after = y + 1 < end ? at[x + p->row] * LIGHT : 0;
-            sum[x] = (own + before[x]) + after;
-            before[x] = own;
-        }
-        for (int x = 0; x < n; x++)
-            at[x] = sum[x] + (sum[x - step] + sum[x + step]);
-    }
-}
-
 // Colours of a slice are means of its samples. Weights are divided by the number of views, so sums of theirs are means
 // and cannot overflow.
 static void divide(const struct plane *p, int channels, int views)
@@ -314,62 +277,41 @@ static void divide(const struct plane *p, int channels, int views)
     }
 }
 
-// Make the planes of all slices that reach the block. Returns how many of them have light.
-static int make_planes(struct block *b)
+// Make the planes of all slices that reach the block.
+static void make_planes(struct block *b)
 {
     const struct hf_layers *l = b->c.l;
     size_t used = 0;
-    int lit = 0;
     for (int i = 0; i < l->slices && !hf_stopped(l->stop); i++) {
         struct plane *p = &b->plane[i];
         *p = (struct plane){0};
         if (!is_in(l, i))
             continue;
         gather(b, i, &used);
-        if (!p->tiles)
-            continue;
-        divide(p, l->channels, l->set.views);
-        if (!l->set.highlights || l->slice[i].level == 0)
-            continue;
-        const struct hf_slice s = slice_of(l, &l->slice[i], p, 0);
-        const struct hf_build build = {
-            .s = &s, .set = &b->c.samples->seen, .weight = b->c.samples->share, .channels = LIT};
-        struct taker to = {.p = p, .channels = l->channels, .light = 1};
-        if (hf_layers_mark_used(&b->c, i, HF_KIND_SEEN))
-            hf_layers_take_sources(&b->c, &build, take_row, &to);
-        if (!p->lit)
-            continue;
-        soften(b, p);
-        p->number = lit++;
+        if (p->tiles)
+            divide(p, l->channels, l->set.views);
     }
-    return lit;
 }
 
 // ---- rows ----
 
-// The planes that reach a run of tiles, nearest first, for rows from `row` on. Returns how many.
-static int list_planes(const struct block *b, uint32_t tiles, int row, struct hf_view_plane *to, int *lit, int *far)
+// The planes that reach a run of tiles, nearest first. Returns how many.
+static int list_planes(const struct block *b, uint32_t tiles, struct hf_view_plane *to, int *far)
 {
     const struct hf_layers *l = b->c.l;
     int n = 0;
-    *lit = *far = 0;
+    *far = 0;
     for (int i = 0; i < l->slices; i++) {
         const struct plane *p = &b->plane[i];
         if (!(p->tiles & tiles))
             continue;
         *far += l->slice[i].radius <= 0;
-        to[n] =
+        to[n++] =
             (struct hf_view_plane){.at = p->at,
                                    .row = p->row,
                                    .channel = p->channel,
                                    .level = p->level,
                                    .shift = (const int16_t(*)[2])l->shift[l->group_used] + (ptrdiff_t)i * l->set.views};
-        if (p->lit) {
-            to[n].light = b->light[0] + (size_t)p->number * PIXELS + row * WIDTH;
-            to[n].seen = b->light[1] + (size_t)p->number * PIXELS + row * WIDTH;
-            *lit = 1;
-        }
-        n++;
     }
     return n;
 }
@@ -392,7 +334,7 @@ static void make_run(const struct block *b, int tx, int ty, int n)
         .x = eye_x, .sharp = sqrtf((float)l->set.views) / 2, .point = (const float(*)[2])l->point[l->group_used]};
     for (int i = 0; i < n; i++)
         tiles |= (uint32_t)1 << (ty * COLUMNS + tx + i);
-    row.planes = list_planes(b, tiles, ty * TILE, plane, &row.lit, &row.far);
+    row.planes = list_planes(b, tiles, plane, &row.far);
     for (int x = 0; x < WIDTH; x++)
         eye_x[x] = (float)(cat * (2 * fmin(b->c.x0 + x + 0.5, l->width) - l->width) * corner);
     for (int y = ty * TILE; y < (ty + 1) * TILE && !hf_stopped(l->stop); y++) {
@@ -406,92 +348,48 @@ static void make_run(const struct block *b, int tx, int ty, int n)
         eye.total = b->total + at;
         row.eye = cat > 0 ? &eye : NULL;
         b->c.k->views(&row);
-        for (int i = 0; i < row.planes; i++)
-            if (plane[i].light) {
-                plane[i].light += WIDTH;
-                plane[i].seen += WIDTH;
-            }
     }
-}
-
-// ---- light ----
-
-// Views that meet less than this part of the light that a pixel has tell the less of it, the less they meet: at the rim of
-// a disc they may miss its highlight, and a sample beside that with hardly a highlight must not speak for it.
-#define MET (1.0f / 64)
-
-// Add shares of one radius to a block's light, as far as views see them.
-static void put_light(struct hf_cell *c, const struct hf_shine *shine, int slice, float amount)
-{
-    const struct block *b = (const struct block *)(const void *)c;
-    const struct plane *p = &b->plane[slice];
-    // Light is that of nine pixels in all views, see soften().
-    const float all = 9 * (float)c->l->set.views * amount;
-    for (int y = 0; p->lit && y < c->rows * TILE; y++)
-        for (int tx = 0; tx < c->columns; tx++) {
-            if (!*hf_layers_map_at(&shine->shone, tx, y / TILE))
-                continue;
-            const int at = y * WIDTH + tx * TILE;
-            const float *light = b->light[0] + (size_t)p->number * PIXELS + at,
-                        *seen = b->light[1] + (size_t)p->number * PIXELS + at;
-            for (int x = 0; x < TILE; x++) {
-                const float *in = shine->sum.at + y * shine->sum.row + tx * TILE + x;
-                float met = 0;
-                for (int i = 0; i < LIT; i++)
-                    met += in[i * shine->sum.channel] * LIGHT;
-                met = hf_larger(light[x], MET * all * met);
-                const float part = light[x] > 0 ? seen[x] / met * amount : 0;
-                for (int i = 0; i < LIT; i++)
-                    b->shone[i][at + x] += part * in[i * shine->sum.channel];
-            }
-        }
-}
-
-static void add_lights(struct block *b, int lit)
-{
-    for (int i = 0; i < LIT; i++)
-        memset(b->shone[i], 0, sizeof(float) * PIXELS);
-    for (int i = 0; lit && i < b->c.l->slices && !hf_stopped(b->c.l->stop); i++)
-        if (b->c.l->slice[i].level > 0)
-            hf_layers_each_light(&b->c, i, put_light);
 }
 
 // ---- result ----
 
-// The weight of a pixel's views, with what they leave open filled. *fill: the factor for what they see behind the
-// focus.
-// total: the weight of views that leave nothing open.
-static float weight_of(const struct block *b, int at, float total, float *fill)
+// The weight of a pixel's views, with what they leave open filled, but for what light covers (lit). *fill: the factor for what
+// they see behind the focus. total: the weight of views that leave nothing open.
+static float weight_of(const struct block *b, int at, float total, float lit, float *fill)
 {
-    const float near = b->near[4][at], far = b->beyond[4][at], hole = total - near - far;
+    const float near = b->near[4][at], far = b->beyond[4][at], hole = total * (1 - lit) - near - far;
     *fill = hole > 0 ? 1 + hole / hf_larger(far, FAINT * total) : 1;
     return near + *fill * far;
 }
 
 // Put a tile's views in the place of what slices made, as far as they count.
-static void mix_tile(const struct block *b, int tx, int ty, float *const out[4], ptrdiff_t stride)
+static void mix_tile(const struct block *b, const struct hf_cell *of, int tx, int ty, float *const out[4],
+                     ptrdiff_t stride)
 {
     const struct hf_layers *l = b->c.l;
     const float *top = &b->blend[ty][tx], *low = &b->blend[ty + 1][tx];
-    for (int y = 0; y < TILE; y++)
+    for (int y = 0; y < TILE; y++) {
+        float light[6][TILE];
+        hf_layers_light_row(of, tx + (b->c.x0 - of->x0) / TILE, ty * TILE + y + b->c.y0 - of->y0,
+                            (float *[]){light[0], light[1], light[2], light[3], light[4], light[5]});
         for (int x = 0; x < TILE; x++) {
             const int at = (ty * TILE + y) * WIDTH + tx * TILE + x;
             const float u = ((float)x + 0.5f) / TILE, v = ((float)y + 0.5f) / TILE;
             const float blend = (1 - v) * ((1 - u) * top[0] + u * top[1]) + v * ((1 - u) * low[0] + u * low[1]);
             const float total = l->key.cat_eye > 0 ? b->total[at] : 1;
             float fill;
-            const float w = weight_of(b, at, total, &fill);
+            const float w = weight_of(b, at, total, light[4][x], &fill), rest = hf_larger(1 - light[4][x], 0);
             if (!(w > 0 && blend > 0))
                 continue;
             for (int i = 0; i < l->channels; i++) {
                 float *to = &out[i][y * stride + x];
-                float own = (b->near[i][at] + fill * b->beyond[i][at]) / w +
-                            (i < LIT ? b->shone[i][at] * total / hf_larger(w, SHOWN * total) : 0);
+                float own = rest * ((b->near[i][at] + fill * b->beyond[i][at]) / w) + light[i][x];
                 if (i == 3)
                     own = fabsf(own - 1) < HF_LAYERS_OPAQUE ? 1 : own;
                 *to = blend < 1 ? (1 - blend) * *to + blend * own : own;
             }
         }
+    }
 }
 
 static void make_block(struct block *b, const struct hf_cell *of, float *const out[4], ptrdiff_t stride)
@@ -502,23 +400,21 @@ static void make_block(struct block *b, const struct hf_cell *of, float *const o
     hf_layers_find_present(&b->c);
     hf_layers_mark_plain(&b->c);
     memset(b->c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)b->c.source.row * TILE);
-    const int lit = make_planes(b), left = (b->c.x0 - of->x0) / TILE, top = (b->c.y0 - of->y0) / TILE;
-    for (int i = 0; i < 2 && lit; i++)
-        memset(b->light[i], 0, sizeof(float) * (size_t)lit * PIXELS);
+    make_planes(b);
+    const int left = (b->c.x0 - of->x0) / TILE, top = (b->c.y0 - of->y0) / TILE;
     for (int ty = 0; ty < b->c.rows; ty++)
         for (int tx = 0; tx < b->c.columns; tx += RUN) {
             const int n = hf_min(RUN, b->c.columns - tx);
             if (is_blended(b, tx, ty) || (n > 1 && is_blended(b, tx + 1, ty)))
                 make_run(b, tx, ty, n);
         }
-    add_lights(b, lit);
     for (int ty = 0; ty < b->c.rows && !hf_stopped(l->stop); ty++)
         for (int tx = 0; tx < b->c.columns; tx++) {
             float *to[4] = {NULL};
             for (int i = 0; i < l->channels; i++)
                 to[i] = out[i] + ty * TILE * stride + tx * TILE;
             if (is_blended(b, tx, ty) && !hf_layers_is_sharp(of, tx + left, ty + top))
-                mix_tile(b, tx, ty, to, stride);
+                mix_tile(b, of, tx, ty, to, stride);
         }
 }
 

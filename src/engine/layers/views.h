@@ -21,14 +21,11 @@ enum {
 
 // A slice as views read it: planes of what it holds. x has full resolution, y that of `level`.
 struct hf_view_plane {
-    // The weight at the block's pixel (0, 0), over the number of views; colours and light follow, `channel` floats apart.
+    // The weight at the block's pixel (0, 0), over the number of views; colours follow, `channel` floats apart.
     const float *at;
     ptrdiff_t row, channel;  // in floats
     int level;
     const int16_t (*shift)[2];  // of each view: from a pixel to the one that it shows
-    // For the pixels of the row: the light of highlights and what of it is seen, added up over the views. NULL: there is
-    // none.
-    float *light, *seen;
 };
 
 // What a cat's eye leaves of the lens, seen from a row of pixels: of each view's point what lies within the circle of
@@ -45,9 +42,9 @@ struct hf_view_eye {
 // from `far` on.
 struct hf_view_row {
     const struct hf_view_plane *plane;
-    int planes, far, views, channels, lit, x, y, n;  // lit: some plane has light
-    float one;                                       // 1 / views
-    const struct hf_view_eye *eye;                   // or NULL
+    int planes, far, views, channels, x, y, n;
+    float one;                      // 1 / views
+    const struct hf_view_eye *eye;  // or NULL
     float *near[5], *beyond[5];
 };
 

@@ -20,11 +20,6 @@ static float look(const struct hf_view_row *r, int v, int x, int from, int end, 
         const struct hf_view_plane *p = &r->plane[i];
         const float *in = p->at + ((r->y + p->shift[v][1]) >> p->level) * p->row + x + p->shift[v][0];
         const float w = in[0] * part, a = w < open ? w : open;
-        if (p->light) {
-            const float l = in[(r->channels + 1) * p->channel] * part, most = w > open ? w : open;
-            p->light[x] = p->light[x] + l;
-            p->seen[x] = l * (open / (most > 1e-30f ? most : 1e-30f)) + p->seen[x];
-        }
         open = open - a;
         for (int c = 0; c < r->channels; c++)
             sum[c] = a * in[(c + 1) * p->channel] + sum[c];

@@ -22,13 +22,6 @@ HF_INLINE void layers_look(const struct hf_view_row *r, const int channels, cons
         const float *in = p->at + ((r->y + p->shift[v][1]) >> p->level) * p->row + r->x + at + p->shift[v][0];
         for (int j = 0; j < side; j++, in += VF_N) {
             const vf w = eye ? vf_mul(vf_load(in), part[j]) : vf_load(in);
-            if (p->light) {
-                float *light = p->light + r->x + at + j * VF_N, *seen = p->seen + r->x + at + j * VF_N;
-                const vf own = vf_load(in + (channels + 1) * p->channel), l = eye ? vf_mul(own, part[j]) : own;
-                const vf see = vf_div(open[j], vf_max(vf_max(w, open[j]), vf_set1(1e-30f)));
-                vf_store(light, vf_add(vf_load(light), l));
-                vf_store(seen, vf_fma(l, see, vf_load(seen)));
-            }
             const vf a = vf_min(w, open[j]);
             open[j] = vf_sub(open[j], a);
             for (int c = 0; c < channels; c++)
@@ -36,7 +29,7 @@ HF_INLINE void layers_look(const struct hf_view_row *r, const int channels, cons
             sum[4][j] = vf_add(sum[4][j], a);
         }
         // Nothing farther is seen from here.
-        if (!r->lit && !vm_any(vf_gt(side > 1 ? vf_max(open[0], open[side - 1]) : open[0], vf_zero())))
+        if (!vm_any(vf_gt(side > 1 ? vf_max(open[0], open[side - 1]) : open[0], vf_zero())))
             break;
     }
 }
