@@ -490,7 +490,7 @@ static float left_by_middle(float covered, float near)
     return 1 - hf_saturate((covered - near) / hf_larger(1 - near, OPEN));
 }
 
-static const float *light_at(const struct hf_cell *c, int stack, int channel, int x, int y)
+const float *hf_layers_light_at(const struct hf_cell *c, int stack, int channel, int x, int y)
 {
     const struct hf_window *w = &c->light[stack];
     return w->at + y * w->row + channel * w->channel + x;
@@ -500,7 +500,7 @@ void hf_layers_add_near_cover(const struct hf_cell *c, int tx, int end, int y, f
 {
     const int from = tx;
     for (int to; c->l->set.highlights && (to = hf_layers_next_run(&c->lit[NEAR], &tx, y / TILE, end, 1)) > tx; tx = to)
-        c->k->light(c->whole, 1, light_at(c, NEAR, c->l->channels, tx * TILE, y), (to - tx) * TILE,
+        c->k->light(c->whole, 1, hf_layers_light_at(c, NEAR, c->l->channels, tx * TILE, y), (to - tx) * TILE,
                     out + (tx - from) * TILE);
 }
 
@@ -532,8 +532,8 @@ void hf_layers_light_row(const struct hf_cell *c, int tx, int y, float *const ou
         shown(c, tx, y, part);
     for (int stack = NEAR; stack <= FAR; stack++)
         for (int i = 0; lit[stack] && i <= channels; i++)
-            c->k->light(stack == FAR ? part : c->whole, 1, light_at(c, stack, i, tx * TILE, y), TILE,
+            c->k->light(stack == FAR ? part : c->whole, 1, hf_layers_light_at(c, stack, i, tx * TILE, y), TILE,
                         out[i < channels ? i : 4]);
     if (lit[FAR])
-        c->k->light(c->whole, 1, light_at(c, FAR, channels + 1, tx * TILE, y), TILE, out[5]);
+        c->k->light(c->whole, 1, hf_layers_light_at(c, FAR, channels + 1, tx * TILE, y), TILE, out[5]);
 }

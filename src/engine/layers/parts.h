@@ -172,6 +172,8 @@ size_t hf_layers_cut_floats(const struct hf_cell *c);
 // Draw the highlights on one side of the focus, NEAR or FAR, with their coverage, as they shine through all that is in front of
 // them but the middle stack. Call for FAR after the last slice.
 void hf_layers_draw_lights(struct hf_cell *c, int stack);
+// A row of a stack's light: colours, then what it covers, then what it would cover if nothing were before it.
+const float *hf_layers_light_at(const struct hf_cell *c, int stack, int channel, int x, int y);
 // Add what light in front of the focus covers, in a row of some tiles.
 void hf_layers_add_near_cover(const struct hf_cell *c, int tx, int end, int y, float *out);
 // The light of a tile's row as far as it is seen: colours, then at 4 what it covers, and at 5 what that behind the focus would

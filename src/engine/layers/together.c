@@ -296,13 +296,13 @@ void hf_layers_begin_middle(const struct hf_cell *c)
 static int state_of(const struct hf_cell *c, int tx, int ty)
 {
     return *hf_layers_map_at(&c->far, tx, ty) | *hf_layers_map_at(&c->begun, tx, ty) << 1 |
-           (*hf_layers_map_at(&c->lit[NEAR], tx, ty) | *hf_layers_map_at(&c->lit[FAR], tx, ty)) << 2;
+           *hf_layers_map_at(&c->lit[FAR], tx, ty) << 2 | *hf_layers_map_at(&c->lit[NEAR], tx, ty) << 3;
 }
 
 // Finish one row of a run of tiles.
 static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, float *const out[4])
 {
-    const int far = state & 1, lit = state & 4, channels = c->l->channels;
+    const int far = state & 1, lit = state & 12, plain = !(state & 10), channels = c->l->channels;
     struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, x, y);
     const float *own[6] = {NULL};
     hf_layers_planes_at(c->l, &c->samples->seen, c->samples->seen.weight, c->x0 + x, c->y0 + y, own);
@@ -311,7 +311,13 @@ static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, 
             r.colour[i] = c->none;
         r.weight = c->none;
     }
-    for (int i = 0; i < n && lit; i += TILE) {
+    const float *light[6];
+    for (int i = 0; i < 6; i++)
+        light[i] = c->light_row[i];
+    // With nothing in the middle stack all far light is seen as it is.
+    for (int i = 0; lit && plain && i < 6; i++)
+        light[i] = hf_layers_light_at(c, FAR, i < channels ? i : channels + (i == 5), x, y);
+    for (int i = 0; i < n && lit && !plain; i += TILE) {
         float *to[6];
         for (int k = 0; k < 6; k++)
             to[k] = c->light_row[k] + i;
@@ -319,8 +325,8 @@ static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, 
     }
     if (far)
         raise(c, FAR, x, n, y, c->row);
-    c->k->finish(&r, far ? (const float *const *)c->row : NULL, lit ? (const float *const *)c->light_row : NULL, own,
-                 channels, c->l->set.hidden ? HF_LAYERS_FAINT : HF_LAYERS_FAINT_ALONE, n, out);
+    c->k->finish(&r, far ? (const float *const *)c->row : NULL, lit ? light : NULL, own, channels,
+                 c->l->set.hidden ? HF_LAYERS_FAINT : HF_LAYERS_FAINT_ALONE, n, out);
 }
 
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride)
