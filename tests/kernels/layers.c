@@ -371,7 +371,7 @@ static void drawing_call(struct world *w, const struct kernels *k, enum arena a,
     else if (which == LAYERS_FOLD)
         s->fold(line(w, a, 0), w->n, out);
     else if (which == LAYERS_LIGHT)
-        s->light(line(w, a, 0), now.part, line(w, a, 1), w->n, out);
+        s->light(line(w, a, 0), line(w, a, 1), w->n, out);
     else
         s->up(line(w, a, 0), line(w, a, 1), w->n, out);
 }

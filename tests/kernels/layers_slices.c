@@ -41,8 +41,8 @@ void weigh_call(const struct world *w, const struct kernels *k, enum arena a)
                     out, slot_start(w, a, SLOT_WORK));
 }
 
-// Planes of two rows: weight, colours, light. Views see either row of them, displaced by up to 16 pixels.
-enum { PLANE_LINES = 16, EYE = 48, LIGHT = IN + 11 };
+// Planes of two rows: weight, colours. Views see either row of them, displaced by up to 16 pixels.
+enum { PLANE_LINES = 16, EYE = 48 };
 
 void views_make(struct world *w)
 {
@@ -51,7 +51,7 @@ void views_make(struct world *w)
     w->n = 16 * rng_int(r, 1, 2);
     for (int i = 0; i < PLANES; i++)
         for (int y = 0; y < 2; y++)
-            for (int c = 0; c <= now.channels + 1; c++)
+            for (int c = 0; c <= now.channels; c++)
                 fill(w, PLANE_LINES * i + 8 * y + c, -16, w->n + 16, c ? COLOUR : WEIGHT);
     for (int v = 0; v < VIEWS; v++)
         for (int k = 0; k < 2; k++) {
@@ -61,10 +61,8 @@ void views_make(struct world *w)
         }
     for (int x = 0; x < w->n; x++)
         line(w, ARENA_MADE, EYE)[x] = rng_float(r, -1, 1);
-    for (int i = 0; i < 2; i++)
-        fill(w, LIGHT + i, 0, w->n, WEIGHT);
-    for (int i = 0; i < 13; i++)
-        if (i < 10 ? i % 5 < now.channels || i % 5 == 4 : i == 10 ? now.with : now.add)
+    for (int i = 0; i < 11; i++)
+        if (i < 10 ? i % 5 < now.channels || i % 5 == 4 : now.with)
             put(w, IN + i, w->n, 0);
 }
 

@@ -35,10 +35,10 @@ void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float 
     }
 }
 
-void hf_layers_light_c(const float *part, float amount, const float *in, int n, float *out)
+void hf_layers_light_c(const float *part, const float *in, int n, float *out)
 {
     for (int x = 0; x < n; x++)
-        out[x] = part[x] * amount * in[x] + out[x];
+        out[x] = part[x] * in[x] + out[x];
 }
 
 void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[5], const float *const light[6],

@@ -72,13 +72,12 @@ static void layers_blend_simd(const struct hf_stack_row *to, int channels, const
 }
 
 // The last addition is never fused, as in the plain C.
-static void layers_light_simd(const float *part, float amount, const float *in, int n, float *out)
+static void layers_light_simd(const float *part, const float *in, int n, float *out)
 {
-    const vf much = vf_set1(amount);
     for (int x = 0; x < n; x += VF_N) {
         const vf v = vf_load(in + x);
         if (vm_any(vf_ne(v, vf_zero())))
-            vf_store(out + x, vf_add(vf_mul(vf_mul(vf_load(part + x), much), v), vf_load(out + x)));
+            vf_store(out + x, vf_add(vf_mul(vf_load(part + x), v), vf_load(out + x)));
     }
 }
 

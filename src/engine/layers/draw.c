@@ -134,21 +134,6 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     }
 }
 
-// The tile columns or rows beyond the frame that have samples: one on each side. Those farther out repeat them.
-struct around {
-    int first, last;
-};
-
-static struct around around_of(int first, int tiles)
-{
-    return (struct around){-first / TILE - 1, tiles - first / TILE};
-}
-
-static int within(int t, struct around a)
-{
-    return t < a.first ? a.first : t > a.last ? a.last : t;
-}
-
 // Fill tiles beyond the frame with tile `like`: each of its rows has one colour.
 static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int like, int tx, int end, int y)
 {
@@ -170,7 +155,6 @@ static void repeat_tile(const struct hf_cell *c, const struct hf_build *b, int l
 static void drop_tile(const struct hf_cell *c, const struct hf_build *b, int like, int tx, int y)
 {
     const int size = TILE >> b->s->level, n = tx > like ? hf_min((tx - like) * size, size + 16) : size;
-    *hf_layers_map_at(&c->filled, like, y / 2) = 0;
     for (int i = b->first; i < b->channels; i++)
         memset(source_at(c, i, like * size, y), 0, sizeof(float) * (size_t)n);
 }
@@ -178,17 +162,20 @@ static void drop_tile(const struct hf_cell *c, const struct hf_build *b, int lik
 static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty, int from, int y0, int y1)
 {
     const int size = TILE >> b->s->level;
-    const struct around wide = around_of(c->x0, c->l->columns);
+    const struct hf_rect with = hf_layers_tiles_with_samples(c);
     for (int i = 0; i < size / 2; i++)
         memset(hf_layers_map_at(&c->filled, c->box.x0, i), 0, (size_t)(c->box.x1 - c->box.x0));
     for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0)) > tx; tx = end) {
-        const int first = within(tx, wide), last = within(end - 1, wide);
+        const int first = hf_layers_within(tx, with.x0, with.x1), last = hf_layers_within(end - 1, with.x0, with.x1);
+        // The run may lie beyond the last tile that has samples, on one side of the frame.
+        const int beyond = first >= end || last < tx;
         for (int y = y0; y < y1; y++) {
+            if (beyond)
+                *hf_layers_map_at(&c->filled, first, y / 2) = 0;
             build_run(c, b, first, last + 1, ty, from, y);
             repeat_tile(c, b, first, tx, hf_min(first, end), y);
             repeat_tile(c, b, last, hf_max(last + 1, tx), end, y);
-            // The run may lie beyond the last tile that has samples, on one side of the frame.
-            if (first >= end || last < tx)
+            if (beyond)
                 drop_tile(c, b, first, tx, y);
         }
     }
@@ -252,7 +239,7 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
                           const struct hf_window *to)
 {
     const int size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
-    const struct around high = around_of(c->y0, c->l->rows);
+    const struct hf_rect with = hf_layers_tiles_with_samples(c);
     struct held held = {0};
     clear_touched(c, touched, to, b->s->level, b->first, b->channels);
     if (b->s->shape)
@@ -265,7 +252,7 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
         // The pairs of rows whose blur reaches the cell.
         const int least = -margin - b->s->rows - ty * size, most = c->rows * size + margin + b->s->rows - ty * size;
         const int y0 = least > 0 ? least & ~1 : 0, y1 = most < size ? (most + 1) & ~1 : size;
-        const int from = within(ty, high), beyond = from == high.first || from == high.last;
+        const int from = hf_layers_within(ty, with.y0, with.y1), beyond = from == with.y0 || from == with.y1;
         // All rows of tiles beyond the frame are equal, so their sources are built once.
         if (!beyond || held.y0 == held.y1 || held.from != from) {
             clear_row(c, b, held.y0, held.y1);
@@ -281,12 +268,12 @@ void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, con
 void hf_layers_take_sources(const struct hf_cell *c, const struct hf_build *b, hf_layers_taker *take, void *to)
 {
     const int size = TILE >> b->s->level;
-    const struct around high = around_of(c->y0, c->l->rows);
+    const struct hf_rect with = hf_layers_tiles_with_samples(c);
     for (int ty = c->box.y0; ty < c->box.y1 && !hf_stopped(c->l->stop); ty++) {
         int tx = c->box.x0;
         if (hf_layers_next_run(&c->used, &tx, ty, c->box.x1, ~0) == tx)
             continue;
-        build_row(c, b, ty, within(ty, high), 0, size);
+        build_row(c, b, ty, hf_layers_within(ty, with.y0, with.y1), 0, size);
         for (int y = 0; y < size; y++) {
             tx = c->box.x0;
             for (int end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->box.x1, ~0)) > tx; tx = end)

@@ -61,8 +61,8 @@ typedef int hf_layers_extremes(const float *radius, const float *weight, const f
 typedef int hf_layers_inside(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
                              float after);
 // A slice's parts of n samples, summed with those in the rows - 1 rows below. share: the part of their weight that is
-// left out. add: add to what out holds. any[i] becomes 1 where the 16 samples from 16 i on
-// have some. in[4] NULL: all weigh 1.
+// left out. add: add to what out holds. any[i] becomes 1 where the 16 samples from 16 i on have some. in[4] NULL: all
+// weigh 1.
 typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                              int rows, int channels, int n, int add, float *const out[5], uint8_t *any);
 // Sums of pairs of 2n numbers; out may be in.
@@ -92,8 +92,8 @@ typedef void hf_layers_views(const struct hf_view_row *row);
 enum hf_layers_sums { HF_SUMS_HIDING, HF_SUMS_SEEN, HF_SUMS_HELD, HF_SUMS_HIDDEN };
 typedef void hf_layers_blend(const struct hf_stack_row *to, int channels, const float *const in[5],
                              enum hf_layers_sums sums, int n);
-// Add light as far as it is seen: out += part * amount * in.
-typedef void hf_layers_light(const float *part, float amount, const float *in, int n, float *out);
+// Add light as far as it is seen: out += part * in.
+typedef void hf_layers_light(const float *part, const float *in, int n, float *out);
 // The final n pixels from the near sums and, if not NULL, the far ones and light. Light is added as it is; its weights (4) are
 // what it covers of the pixel, and sums fill the rest. Where the far coverage and light's that nothing cuts (5) are below `faint`,
 // near and far share the open part. A result equal to the pixel's own colour takes its bits.

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "engine/layers/parts.h"
+#include "pixel/edges.h"
 
 enum {
     SQUARE = TILE / 2,  // a lamp is what is bright in a square of so many pixels
@@ -84,8 +85,23 @@ static void subtract(const float *part, const float *in, int n, float *out)
     }
 }
 
-// Add the drawn shares of one radius to a stack's light, or subtract what is cut from those of t. Tiles that have none yet
-// are cleared first.
+// Clear the light of tiles that have none yet and get some.
+static void begin_light(const struct hf_cell *c, int stack)
+{
+    const struct hf_window *w = &c->light[stack];
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0; tx < c->columns; tx++) {
+            uint8_t *lit = hf_layers_map_at(&c->lit[stack], tx, ty);
+            if (*lit || !*hf_layers_map_at(&c->shone, tx, ty))
+                continue;
+            *lit = 1;
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
+                for (int i = 0; i < c->l->channels + 2; i++)
+                    memset(w->at + y * w->row + i * w->channel + tx * TILE, 0, sizeof(float) * TILE);
+        }
+}
+
+// Add the drawn shares of one radius to a stack's light, or subtract what is cut from those of t, which it holds already.
 static void add_light(struct hf_cell *c, int stack, int number, const struct lamps *t)
 {
     const struct hf_window *to = &c->light[stack];
@@ -100,16 +116,12 @@ static void add_light(struct hf_cell *c, int stack, int number, const struct lam
                 for (int i = 0; i < channels + (t ? 1 : 2); i++) {
                     const float *in = c->shine.at + y * c->shine.row + hf_min(i, channels) * c->shine.channel + x0;
                     float *out = to->at + y * to->row + i * to->channel;
-                    for (int j = tx; j < end; j++)
-                        if (!*hf_layers_map_at(&c->lit[stack], j, ty))
-                            memset(out + j * TILE, 0, sizeof(float) * TILE);
                     if (t)
                         subtract(part, in, n, out + x0);
                     else
-                        c->k->light(part, 1, in, n, out + x0);
+                        c->k->light(part, in, n, out + x0);
                 }
             }
-            memset(hf_layers_map_at(&c->lit[stack], tx, ty), 1, (size_t)(end - tx));
         }
 }
 
@@ -256,8 +268,8 @@ static int tile_of(float x)
 static int find_lamps(const struct hf_cell *c, int stack, int tx, int ty, struct lamps *to)
 {
     const struct hf_rect around = hf_layers_tiles_with_samples(c);
-    const int x0 = c->x0 + hf_min(hf_max(tx, around.x0), around.x1) * TILE,
-              y0 = c->y0 + hf_min(hf_max(ty, around.y0), around.y1) * TILE;
+    const int x0 = c->x0 + hf_layers_within(tx, around.x0, around.x1) * TILE,
+              y0 = c->y0 + hf_layers_within(ty, around.y0, around.y1) * TILE;
     *to = (struct lamps){.tx = tx, .ty = ty, .tiles = {c->columns, c->rows, 0, 0}};
     for (int i = 0; i < SQUARES; i++) {
         struct lamp *p = &to->lamp[to->count];
@@ -285,11 +297,6 @@ static float is_before(const struct hf_layers *l, const struct lamp *p, const st
     return hf_saturate((p->radius - s->radius) / (2 * apart_at(l, p->radius)) - 0.5f);
 }
 
-static float between(float v, float low, float high)
-{
-    return v > low ? v < high ? v : high : low;
-}
-
 // A lamp and a slice before it. All places are counted from the corner of the lamp's tile.
 struct passing {
     const struct lamp *lamp;
@@ -303,7 +310,7 @@ struct passing {
 static float passes_at(int x, float lamp, float part, float most, float size)
 {
     const float at = 2 * (float)x + 1;
-    return (at + between(part * (lamp - at), -most, most)) * size - 0.5f;
+    return (at + hf_edges_between(part * (lamp - at), -most, most)) * size - 0.5f;
 }
 
 // floorf() without a call.
@@ -313,18 +320,13 @@ static int whole_of(float v)
     return i - (v < (float)i);
 }
 
-static int inside(int i, int n)
-{
-    return i > 0 ? i < n ? i : n - 1 : 0;
-}
-
 // Add what is cut from pixels x0 to x1 of a row of a lamp's disc. line: scratch for a row of coverage.
 static void cut_row(const struct passing *w, int x0, int x1, int y, float *out, float *line)
 {
     const struct cover *by = w->by;
     const float at = passes_at(y, w->lamp->y, w->part, w->high, w->size), v = at - (float)whole_of(at);
-    const int n = by->columns, upper = inside(whole_of(at) - w->y0, by->rows),
-              lower = inside(whole_of(at) + 1 - w->y0, by->rows);
+    const int n = by->columns, upper = hf_layers_within(whole_of(at) - w->y0, 0, by->rows - 1),
+              lower = hf_layers_within(whole_of(at) + 1 - w->y0, 0, by->rows - 1);
     const float *a = by->at + (ptrdiff_t)upper * n, *b = by->at + (ptrdiff_t)lower * n;
     // The samples that the row's rays pass lie between these. Beyond the coverage its last columns are repeated.
     const int from = whole_of((2 * (float)x0 + 1 - w->wide) * w->size - 0.5f),
@@ -333,7 +335,7 @@ static void cut_row(const struct passing *w, int x0, int x1, int y, float *out, 
     if (first >= last || (last < n && from - w->x0 >= last) || (first > 0 && end - w->x0 <= first))
         return;
     for (int x = from; x < end; x++) {
-        const int i = inside(x - w->x0, n);
+        const int i = hf_layers_within(x - w->x0, 0, n - 1);
         line[x - from] = ((1 - v) * a[i] + v * b[i]) * w->much;
     }
     for (int x = x0; x < x1; x++) {
@@ -382,13 +384,12 @@ static size_t floats_of(const struct lamps *t)
 static void draw_cut(struct hf_cell *c, int stack, const struct lamps *t)
 {
     const struct hf_layers *l = c->l;
-    for (int i = 0; i < l->shines && !hf_stopped(l->stop); i++) {
+    for (int i = 0; i < l->shines && !hf_stopped(l->stop); i++)
         if (is_of(l, stack, i) && hf_layers_use_tile(c, t->tx, t->ty, i) &&
             hf_layers_mark_touched(c, &l->shine[i], &c->shone)) {
             draw(c, i);
             add_light(c, stack, i, t);
         }
-    }
 }
 
 // The tiles of the cell that discs of lamps behind a slice reach.
@@ -411,9 +412,11 @@ static void cut_tiles(struct hf_cell *c, int stack, struct lamps *t, int count)
     const struct hf_layers *l = c->l;
     for (int i = 0; count && i < l->slices && !hf_stopped(l->stop); i++) {
         const struct hf_slice *s = &l->slice[i];
-        const struct hf_rect r = reached_behind(c, s, t, count);
         struct cover p;
-        if (s->level == 0 || r.x0 >= r.x1 || r.y0 >= r.y1)
+        if (s->level == 0)
+            continue;
+        const struct hf_rect r = reached_behind(c, s, t, count);
+        if (r.x0 >= r.x1 || r.y0 >= r.y1)
             continue;
         shape_cover(c, s, r, &p);
         int any = take_weights(c, i, HF_KIND_SEEN, &p, 0);
@@ -474,6 +477,7 @@ void hf_layers_draw_lights(struct hf_cell *c, int stack)
         if (is_of(l, stack, i) && hf_layers_mark_used(c, i, HF_KIND_SHARES) &&
             hf_layers_mark_touched(c, &l->shine[i], &c->shone)) {
             draw(c, i);
+            begin_light(c, stack);
             add_light(c, stack, i, NULL);
             any = 1;
         }
@@ -500,7 +504,7 @@ void hf_layers_add_near_cover(const struct hf_cell *c, int tx, int end, int y, f
 {
     const int from = tx;
     for (int to; c->l->set.highlights && (to = hf_layers_next_run(&c->lit[NEAR], &tx, y / TILE, end, 1)) > tx; tx = to)
-        c->k->light(c->whole, 1, hf_layers_light_at(c, NEAR, c->l->channels, tx * TILE, y), (to - tx) * TILE,
+        c->k->light(c->whole, hf_layers_light_at(c, NEAR, c->l->channels, tx * TILE, y), (to - tx) * TILE,
                     out + (tx - from) * TILE);
 }
 
@@ -532,8 +536,8 @@ void hf_layers_light_row(const struct hf_cell *c, int tx, int y, float *const ou
         shown(c, tx, y, part);
     for (int stack = NEAR; stack <= FAR; stack++)
         for (int i = 0; lit[stack] && i <= channels; i++)
-            c->k->light(stack == FAR ? part : c->whole, 1, hf_layers_light_at(c, stack, i, tx * TILE, y), TILE,
+            c->k->light(stack == FAR ? part : c->whole, hf_layers_light_at(c, stack, i, tx * TILE, y), TILE,
                         out[i < channels ? i : 4]);
     if (lit[FAR])
-        c->k->light(c->whole, 1, hf_layers_light_at(c, FAR, channels + 1, tx * TILE, y), TILE, out[5]);
+        c->k->light(c->whole, hf_layers_light_at(c, FAR, channels + 1, tx * TILE, y), TILE, out[5]);
 }

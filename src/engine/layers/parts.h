@@ -83,6 +83,12 @@ struct hf_build {
     int first;                         // index of the first channel that is drawn
 };
 
+// The number from `first` to `last` that is nearest to i.
+static inline int hf_layers_within(int i, int first, int last)
+{
+    return i < first ? first : i > last ? last : i;
+}
+
 static inline uint8_t *hf_layers_map_at(const struct hf_tile_map *m, int tx, int ty)
 {
     return m->at + (ptrdiff_t)ty * m->stride + tx;
@@ -118,7 +124,8 @@ void hf_layers_find_present(struct hf_cell *c);
 int hf_layers_mark_used(struct hf_cell *c, int slice, enum hf_kind kind);
 // Mark one tile alone, if it has shares of a radius. Returns 0 if it has none.
 int hf_layers_use_tile(struct hf_cell *c, int tx, int ty, int shine);
-// The tiles around the cell that have samples: those of the frame and one beyond it on each side, the last one included.
+// The tiles around the cell that have samples: those of the frame and one beyond it on each side, the last one included. Those
+// farther out repeat them.
 struct hf_rect hf_layers_tiles_with_samples(const struct hf_cell *c);
 // Mark the tiles that the blur of the used tiles reaches, in the cell and one tile around it.
 int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to);

@@ -292,21 +292,25 @@ void hf_layers_begin_middle(const struct hf_cell *c)
             }
 }
 
-// Tiles with the same state are finished together.
+// What a tile has: something far, in the middle stack, and light behind and before the focus. Tiles with the same state are finished
+// together.
+enum { IS_FAR = 1, IS_BEGUN = 2, LIT_FAR = 4, LIT_NEAR = 8 };
+
 static int state_of(const struct hf_cell *c, int tx, int ty)
 {
-    return *hf_layers_map_at(&c->far, tx, ty) | *hf_layers_map_at(&c->begun, tx, ty) << 1 |
-           *hf_layers_map_at(&c->lit[FAR], tx, ty) << 2 | *hf_layers_map_at(&c->lit[NEAR], tx, ty) << 3;
+    return *hf_layers_map_at(&c->far, tx, ty) * IS_FAR | *hf_layers_map_at(&c->begun, tx, ty) * IS_BEGUN |
+           *hf_layers_map_at(&c->lit[FAR], tx, ty) * LIT_FAR | *hf_layers_map_at(&c->lit[NEAR], tx, ty) * LIT_NEAR;
 }
 
 // Finish one row of a run of tiles.
 static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, float *const out[4])
 {
-    const int far = state & 1, lit = state & 12, plain = !(state & 10), channels = c->l->channels;
+    const int far = state & IS_FAR, lit = state & (LIT_FAR | LIT_NEAR), whole = !(state & (IS_BEGUN | LIT_NEAR)),
+              channels = c->l->channels;
     struct hf_stack_row r = hf_layers_stack_at(c, MIDDLE, x, y);
     const float *own[6] = {NULL};
     hf_layers_planes_at(c->l, &c->samples->seen, c->samples->seen.weight, c->x0 + x, c->y0 + y, own);
-    if (!(state & 2)) {
+    if (!(state & IS_BEGUN)) {
         for (int i = 0; i < channels; i++)
             r.colour[i] = c->none;
         r.weight = c->none;
@@ -315,9 +319,9 @@ static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, 
     for (int i = 0; i < 6; i++)
         light[i] = c->light_row[i];
     // With nothing in the middle stack all far light is seen as it is.
-    for (int i = 0; lit && plain && i < 6; i++)
+    for (int i = 0; lit && whole && i < 6; i++)
         light[i] = hf_layers_light_at(c, FAR, i < channels ? i : channels + (i == 5), x, y);
-    for (int i = 0; i < n && lit && !plain; i += TILE) {
+    for (int i = 0; i < n && lit && !whole; i += TILE) {
         float *to[6];
         for (int k = 0; k < 6; k++)
             to[k] = c->light_row[k] + i;
