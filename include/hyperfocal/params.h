@@ -262,7 +262,7 @@ enum hf_layers_quality {
     HF_LAYERS_DRAFT,  // few slices; nothing is filled in behind objects, so near objects keep hard rims
     HF_LAYERS_HIGH,   // finer slices
     // As HIGH, and edges and patterns go on behind objects. Where near and far cross, each point of the lens is followed
-    // by itself, so that a near edge cuts the discs behind it.
+    // by itself, so that what a near edge hides is told from what lies beside it.
     HF_LAYERS_BEST,
 };
 
@@ -289,8 +289,8 @@ struct hf_layers_params {
     // Guessed is what objects hide, where no further picture shows it, and what lies beyond the frame. Needs
     // highlight.gain 1. Default 0
     int guessed;
-    // Points of the lens that are followed one by one where near and far cross, so that a near edge cuts the discs
-    // behind it: 2 to 192; 1: none, only slices. 0 (default): 96 with BEST, else none. More are for large radii; time
+    // Points of the lens that are followed one by one where near and far cross, so that what a near edge
+    // hides is told from what lies beside it: 2 to 192; 1: none, only slices. 0 (default): 96 with BEST, else none. More are for large radii; time
     // grows with them.
     int lens_points;
     uint32_t reserved[6];

@@ -46,7 +46,8 @@ void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[
 {
     for (int x = 0; x < n; x++) {
         const float w = near->weight[x], lit = light ? light[4][x] : 0;
-        // What the middle stack and light leave; where there is much light, less needs to be there beside it.
+        // The part that neither the middle stack nor light covers. Whether far coverage is enough to fill it is asked of far
+        // samples and of the light that they have lost to highlights together.
         const float open = light ? 1 - w - lit : 1 - w, left = open > 0 ? open : 0;
         const float least = light ? faint - light[5][x] : faint, enough = least > 1e-30f ? least : 1e-30f;
         const float a = far ? far[4][x] : 0;

@@ -28,8 +28,8 @@ struct lamps {
     struct lamp lamp[SQUARES];
     struct hf_rect tiles;
     float light;
-    // What is cut from the discs, a share of their light, at half resolution, one more pixel on every side; `at` is the cell's
-    // first pixel.
+    // For each pixel of `tiles` at half resolution, and one more on every side: the part of the lamps' light that is cut
+    // there. `at` is where the cell's first pixel would be.
     float *cut, *at;
     ptrdiff_t row;
 };

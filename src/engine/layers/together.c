@@ -292,8 +292,8 @@ void hf_layers_begin_middle(const struct hf_cell *c)
             }
 }
 
-// What a tile has: something far, in the middle stack, and light behind and before the focus. Tiles with the same state are finished
-// together.
+// Bits of what a tile has: far slices reach it, the middle stack holds something, there is light from behind the focus, and from
+// before it. Tiles with the same bits are finished together.
 enum { IS_FAR = 1, IS_BEGUN = 2, LIT_FAR = 4, LIT_NEAR = 8 };
 
 static int state_of(const struct hf_cell *c, int tx, int ty)
