@@ -330,6 +330,12 @@ void layers_make(struct world *w, int which)
         fill(w, 1, 0, w->n, COLOUR);
         now.roundings = 3;
         break;
+    case LAYERS_DIM:
+        dim_make(w);
+        return;
+    case LAYERS_PASSED:
+        passed_make(w);
+        return;
     case LAYERS_UP:
         fill(w, 0, -1, w->n + 1, COLOUR);
         fill(w, 1, -1, w->n + 1, COLOUR);
@@ -370,6 +376,8 @@ static void drawing_call(struct world *w, const struct kernels *k, enum arena a,
         s->pairs(line(w, a, 0), now.rows, w->n, out);
     else if (which == LAYERS_FOLD)
         s->fold(line(w, a, 0), w->n, out);
+    else if (which == LAYERS_DIM)
+        s->dim(line(w, a, 0), line(w, a, 1), w->n, out);
     else if (which == LAYERS_LIGHT)
         s->light(line(w, a, 0), line(w, a, 1), w->n, out);
     else
@@ -439,6 +447,9 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         return;
     case LAYERS_WEIGH:
         weigh_call(w, k, a);
+        return;
+    case LAYERS_PASSED:
+        passed_call(w, k, a);
         return;
     case LAYERS_VIEWS:
         views_call(w, k, a);

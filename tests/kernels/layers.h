@@ -17,6 +17,7 @@ struct layers_case {
     struct hf_slice slice;
     struct hf_disc_row disc[DISC_ROWS];
     struct hf_shape_run run[3];
+    struct hf_layers_rays rays;
     int from, to;
     struct hf_pattern_place place;
     struct hf_pattern_tap around[MOST];
@@ -99,6 +100,9 @@ void weigh_call(const struct world *w, const struct kernels *k, enum arena a);
 void views_make(struct world *w);
 void views_call(const struct world *w, const struct kernels *k, enum arena a);
 void disc_make(struct world *w);
+void dim_make(struct world *w);
+void passed_make(struct world *w);
+void passed_call(struct world *w, const struct kernels *k, enum arena a);
 void runs_make(struct world *w);
 void alike_make(struct world *w);
 void alike_call(const struct world *w, const struct kernels *k, enum arena a);

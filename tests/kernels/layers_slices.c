@@ -22,6 +22,7 @@ void weigh_make(struct world *w)
                 fill(w, 8 * c + y, 0, w->n, c < 4 ? COLOUR : WEIGHT);
     for (int c = 0; c < 5; c++)
         fill(w, IN + c, 0, w->n, COLOUR);
+    now.channels = rng_one_in(r, 3) ? 0 : now.channels;  // weights alone
     put_set(w, IN, 5, w->n);
     const size_t any = (size_t)(w->n + 15) / 16;
     slot_use(w, SLOT_WORK, any, 0);
@@ -39,6 +40,49 @@ void weigh_call(const struct world *w, const struct kernels *k, enum arena a)
     set_of(w, a, IN, out);
     k->layers.weigh(&now.slice, in, now.with ? line(w, a, 48) : NULL, stride(w), now.rows, now.channels, w->n, now.add,
                     out, slot_start(w, a, SLOT_WORK));
+}
+
+// Light of either sign, of which all, nothing or some is cut.
+void dim_make(struct world *w)
+{
+    w->colours = COLOURS_PLAIN;
+    fill(w, 0, 0, w->n, WEIGHT);
+    fill(w, 1, 0, w->n, COLOUR);
+    for (int x = 0; x < w->n; x++)
+        line(w, ARENA_MADE, IN)[x] =
+            line(w, ARENA_MADE, 1)[x] * (rng_one_in(&w->rng, 3) ? 1 : rng_float(&w->rng, 0.5f, 2));
+    put(w, IN, w->n, 32);
+}
+
+// The rays of some pixels leave the row of coverage on either side; pixels after the last one keep what they have.
+void passed_make(struct world *w)
+{
+    struct rng *r = &w->rng;
+    const int level = rng_int(r, 1, 4), place = rng_int(r, -40, 40);
+    now.rays = (struct hf_layers_rays){.part = rng_float(r, -1, 1),
+                                       .most = rng_one_in(r, 4) ? 0 : rng_float(r, 0, 60),
+                                       .lamp = (float)place + rng_float(r, -50, 50),
+                                       .x = place / 2 + rng_int(r, -30, 10),
+                                       .size = 1 / (float)(1 << level),
+                                       .above = rng_float(r, 0, 1),
+                                       .below = rng_one_in(r, 4) ? 0 : rng_float(r, 0, 1),
+                                       .first = (place >> level) + rng_int(r, -20, 10),
+                                       .samples = rng_int(r, 1, 2 * w->n)};
+    for (int i = 0; i < 2; i++)
+        fill(w, i, 0, now.rays.samples, WEIGHT);
+    for (int x = 0; x < w->n; x++)
+        line(w, ARENA_MADE, IN)[x] = rng_one_in(r, 3) ? 0 : rng_float(r, 0, 1);
+    put(w, IN, w->n, 0);
+    put(w, IN + 1, now.rays.samples, 32);
+}
+
+void passed_call(struct world *w, const struct kernels *k, enum arena a)
+{
+    struct hf_layers_rays rays = now.rays;
+    rays.upper = line(w, a, 0);
+    rays.lower = line(w, a, 1);
+    rays.line = line(w, a, IN + 1);
+    w->result[a].returned = k->layers.passed(&rays, w->n, line(w, a, IN));
 }
 
 // Planes of two rows: weight, colours. Views see either row of them, displaced by up to 16 pixels.

@@ -141,6 +141,8 @@ const struct test tests[] = {
     ROW("layers_weights", LAYERS_WEIGHTS, 600, layers_make, layers_call, layers_check),
     ROW("layers_stamp", LAYERS_STAMP, 600, layers_make, layers_call, layers_check),
     ROW("layers_light", LAYERS_LIGHT, 600, layers_make, layers_call, layers_check),
+    ROW("layers_dim", LAYERS_DIM, 600, layers_make, layers_call, layers_check),
+    ROW("layers_passed", LAYERS_PASSED, 600, layers_make, layers_call, layers_check),
     ROW("layers_up", LAYERS_UP, 600, layers_make, layers_call, layers_check),
     ROW("layers_blend", LAYERS_BLEND, 600, layers_make, layers_call, layers_check),
     ROW("layers_finish", LAYERS_FINISH, 600, layers_make, layers_call, layers_check),

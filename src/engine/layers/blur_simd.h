@@ -64,7 +64,10 @@ HF_INLINE void layers_weigh_rows(const struct hf_slice *s, const float *const in
 static void layers_weigh_simd(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                               int rows, int channels, int n, int add, float *const out[5], uint8_t *any)
 {
-    HF_WITH_CHANNELS(channels, layers_weigh_rows(s, in, share, stride, rows, CHANNELS, n, add, out, any));
+    if (channels == 0)
+        layers_weigh_rows(s, in, share, stride, rows, 0, n, add, out, any);
+    else
+        HF_WITH_CHANNELS(channels, layers_weigh_rows(s, in, share, stride, rows, CHANNELS, n, add, out, any));
 }
 
 // Reads and writes whole vectors only inside its arrays: n may be less than a vector.

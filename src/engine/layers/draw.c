@@ -57,6 +57,12 @@ static void spread(const struct hf_cell *c, const struct hf_layers_set *set, int
         in[i] = c->line[i];
 }
 
+// How many channels of colour are built.
+static int colours(const struct hf_cell *c, const struct hf_build *b)
+{
+    return b->first ? 0 : c->l->channels;
+}
+
 // Weigh visible samples, one run of tiles with equal `plain` bits at a time: weights that are all 1 and shares that are
 // all 0 are not read.
 static void weigh_seen(const struct hf_cell *c, const struct hf_build *b, int tx, int end, int ty, int px, int py,
@@ -73,7 +79,7 @@ static void weigh_seen(const struct hf_cell *c, const struct hf_build *b, int tx
             part[i] = out[i] + lead;
         hf_layers_planes_at(c->l, b->set, b->weight, px + lead, py, in);
         in[4] = plain & WHOLE ? NULL : in[4];
-        c->k->weigh(b->s, in, plain & DULL ? NULL : share, stride, 1 << b->s->level, c->l->channels, (to - from) * TILE,
+        c->k->weigh(b->s, in, plain & DULL ? NULL : share, stride, 1 << b->s->level, colours(c, b), (to - from) * TILE,
                     0, part, c->any + lead / 16);
     }
 }
@@ -93,7 +99,7 @@ static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     if (b->weight == c->samples->seen.weight)
         weigh_seen(c, b, tx, end, ty, px, py, out);
     else
-        c->k->weigh(b->s, in, NULL, b->set->stride, rows, l->channels, n, 0, out, c->any);
+        c->k->weigh(b->s, in, NULL, b->set->stride, rows, colours(c, b), n, 0, out, c->any);
     for (int from = tx, to; b->more && (to = hf_layers_next_run(&c->used, &from, ty, end, MORE)) > from; from = to) {
         // c->any counts from the start of the run in steps of 16 samples, so an 8-sample tile without these may come
         // first.
@@ -105,7 +111,7 @@ static void weigh_run(const struct hf_cell *c, const struct hf_build *b, int tx,
             spread(c, b->more, at, py, count, in);
         else
             hf_layers_planes_at(l, b->more, b->more->weight, at, py, in);
-        c->k->weigh(b->s, in, NULL, b->more->stride, rows, l->channels, count, 1, more, c->any + lead / 16);
+        c->k->weigh(b->s, in, NULL, b->more->stride, rows, colours(c, b), count, 1, more, c->any + lead / 16);
     }
 }
 

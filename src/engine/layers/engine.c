@@ -439,6 +439,8 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .up = hf_layers_up_c,
         .blend = hf_layers_blend_c,
         .finish = hf_layers_finish_c,
+        .dim = hf_layers_dim_c,
+        .passed = hf_layers_passed_c,
         .views = hf_layers_views_c,
     };
 }

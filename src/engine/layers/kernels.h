@@ -61,7 +61,7 @@ typedef int hf_layers_extremes(const float *radius, const float *weight, const f
 typedef int hf_layers_inside(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
                              float after);
 // A slice's parts of n samples, summed with those in the rows - 1 rows below. share: the part of their weight that is
-// left out. add: add to what out holds. any[i] becomes 1 where the 16 samples from 16 i on have some. in[4] NULL: all
+// left out. channels: 0 for weights alone. add: add to what out holds. any[i] becomes 1 where the 16 samples from 16 i on have some. in[4] NULL: all
 // weigh 1.
 typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                              int rows, int channels, int n, int add, float *const out[5], uint8_t *any);
@@ -100,6 +100,22 @@ typedef void hf_layers_light(const float *part, const float *in, int n, float *o
 typedef void hf_layers_finish(const struct hf_stack_row *near, const float *const far[5], const float *const light[6],
                               const float *const own[4], int channels, float faint, int n, float *const out[4]);
 
+// Subtract what is cut from light: out -= part * in, with a little more, so that nothing is left where all is subtracted from a
+// sum that holds it with other roundings. It never passes 0.
+typedef void hf_layers_dim(const float *part, const float *in, int n, float *out);
+// Add what lies where the rays of n pixels of half resolution pass a row of coverage, up to 1. Returns whether there is something.
+struct hf_layers_rays {
+    float part, most;  // a ray passes this part of the way from its pixel to the lamp, and at most so far from it
+    float lamp;        // where the rays meet, in pixels
+    int x;             // the first pixel, of half resolution
+    float size;        // samples of the coverage for a pixel; a power of 2
+    const float *upper, *lower;  // two rows of coverage, and how much of each counts
+    float above, below;
+    int first, samples;  // the place of the rows' first sample, and how many they are; the ends are repeated
+    float *line;         // scratch
+};
+typedef int hf_layers_passed(const struct hf_layers_rays *r, int n, float *out);
+
 struct hf_layers_kernels {
     struct hf_passes passes;
     hf_layers_unmix *unmix;
@@ -128,9 +144,13 @@ struct hf_layers_kernels {
     hf_layers_blend *blend;
     hf_layers_light *light;
     hf_layers_finish *finish;
+    hf_layers_dim *dim;
+    hf_layers_passed *passed;
     hf_layers_views *views;
 };
 HF_DECLARE_KERNELS(hf_layers_kernels);
+
+#define HF_LAYERS_DIM_MORE (1 + 0x1p-18f)
 
 // How much a sample of that brightness counts in a mean: fully up to `plain`, less above, by the fourth power, down to
 // that of FAINTEST. Otherwise a mean of a lamp and its surroundings would be the lamp's colour.
@@ -218,6 +238,8 @@ hf_layers_up hf_layers_up_c;
 hf_layers_blend hf_layers_blend_c;
 hf_layers_light hf_layers_light_c;
 hf_layers_finish hf_layers_finish_c;
+hf_layers_dim hf_layers_dim_c;
+hf_layers_passed hf_layers_passed_c;
 hf_layers_views hf_layers_views_c;
 
 extern const struct hf_engine_def hf_layers_engine;

@@ -1,48 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The highlights of a cell, drawn whole, and what is nearer than them: it cuts their discs.
-//
-// A lamp is small, so its rays pass what lies before it at one place for each point of its disc. From pixel x, the ray to a
-// lamp at p of radius R meets a sample of radius r < R at x + (p - x) r / R: a blurred edge before a lamp leaves a sharp
-// edge in the lamp's disc. That is looked up in the coverage of each slice, at the resolution of the disc. What is in
-// focus, or nearly so, cuts at its own place and is left to the middle stack, which has full resolution.
+// The highlights of a cell: drawn whole, cut by what is nearer (cut.c), and shown as far as the middle stack leaves them open.
 #include <math.h>
 #include <string.h>
 
 #include "engine/layers/parts.h"
-#include "pixel/edges.h"
-
-enum {
-    SQUARE = TILE / 2,  // a lamp is what is bright in a square of so many pixels
-    SQUARES = 4,        // of a tile
-    MOST = 256          // tiles with lamps that are looked at together
-};
-
-struct lamp {
-    float x, y, radius, light;  // x, y: in pixels from its tile's corner, so that no cell rounds them otherwise
-    float reach;                // how far its disc goes
-};
-
-// A tile with lamps, and the tiles of the cell that their discs reach.
-struct lamps {
-    int tx, ty, count;
-    struct lamp lamp[SQUARES];
-    struct hf_rect tiles;
-    float light;
-    // For each pixel of `tiles` at half resolution, and one more on every side: the part of the lamps' light that is cut
-    // there. `at` is where the cell's first pixel would be.
-    float *cut, *at;
-    ptrdiff_t row;
-};
-
-// The coverage of a slice, around the cell.
-struct cover {
-    float *at;
-    struct hf_rect tiles;
-    int columns, rows;
-    int *first, *end;  // of each row: where something is
-};
-
-// ---- discs ----
 
 // Draw the shares of one radius in the used tiles at full resolution.
 static void draw(const struct hf_cell *c, int number)
@@ -63,7 +24,8 @@ static int is_of(const struct hf_layers *l, int stack, int number)
 
 // How much of the drawn shares counts in a row of light: what is cut from t, NULL: all. lifted: the rest of their samples
 // lies in the middle stack and must not cover them.
-static const float *part_of_row(const struct hf_cell *c, const struct lamps *t, int lifted, int x0, int n, int y)
+static const float *part_of_row(const struct hf_cell *c, const struct hf_layers_cut *t, int lifted, int x0, int n,
+                                int y)
 {
     const float *cut = t ? t->at + (y >> 1) * t->row + x0 / 2 : NULL, *lift = c->lift + (y >> 1) * c->lift_row + x0 / 2;
     if (t)
@@ -73,16 +35,6 @@ static const float *part_of_row(const struct hf_cell *c, const struct lamps *t, 
     for (int x = 0; t && lifted && x < n; x++)
         c->row[0][x] *= c->row[1][x];
     return t ? c->row[0] : lifted ? c->row[1] : c->whole;
-}
-
-// Subtract a part of a disc from a sum that holds it with other roundings: this much more, so that nothing is left where all is
-// subtracted, nor less than that.
-static void subtract(const float *part, const float *in, int n, float *out)
-{
-    for (int x = 0; x < n; x++) {
-        const float left = out[x] - part[x] * in[x] * (1 + 0x1p-18f);
-        out[x] = out[x] < 0 ? -hf_larger(-left, 0) : hf_larger(left, 0);
-    }
 }
 
 // Clear the light of tiles that have none yet and get some.
@@ -102,7 +54,7 @@ static void begin_light(const struct hf_cell *c, int stack)
 }
 
 // Add the drawn shares of one radius to a stack's light, or subtract what is cut from those of t, which it holds already.
-static void add_light(struct hf_cell *c, int stack, int number, const struct lamps *t)
+static void add_light(struct hf_cell *c, int stack, int number, const struct hf_layers_cut *t)
 {
     const struct hf_window *to = &c->light[stack];
     const int channels = c->l->channels,
@@ -116,357 +68,21 @@ static void add_light(struct hf_cell *c, int stack, int number, const struct lam
                 for (int i = 0; i < channels + (t ? 1 : 2); i++) {
                     const float *in = c->shine.at + y * c->shine.row + hf_min(i, channels) * c->shine.channel + x0;
                     float *out = to->at + y * to->row + i * to->channel;
-                    if (t)
-                        subtract(part, in, n, out + x0);
-                    else
-                        c->k->light(part, in, n, out + x0);
+                    (t ? c->k->dim : c->k->light)(part, in, n, out + x0);
                 }
             }
         }
 }
 
-// ---- what covers ----
-
-// Set the size of the coverage of a slice: of the tiles from which its blur may reach tiles r. Tiles beyond the frame repeat
-// each other, so the first of them stand for all.
-static void shape_cover(const struct hf_cell *c, const struct hf_slice *s, struct hf_rect r, struct cover *p)
-{
-    const struct hf_rect most = hf_layers_tiles_with_samples(c);
-    const int n = hf_layers_tiles_around(s), size = TILE >> s->level;
-    p->tiles = (struct hf_rect){hf_max(r.x0 - n, most.x0), hf_max(r.y0 - n, most.y0), hf_min(r.x1 + n, most.x1 + 1),
-                                hf_min(r.y1 + n, most.y1 + 1)};
-    p->columns = (p->tiles.x1 - p->tiles.x0) * size;
-    p->rows = (p->tiles.y1 - p->tiles.y0) * size;
-    p->at = c->cover;
-    p->first = (int *)(c->cover + (ptrdiff_t)p->columns * p->rows);
-    p->end = p->first + p->rows;
-}
-
-size_t hf_layers_cover_floats(const struct hf_cell *c)
-{
-    const struct hf_layers *l = c->l;
-    size_t most = 0;
-    for (int i = 0; l->set.highlights && i < l->slices; i++) {
-        const struct hf_slice *s = &l->slice[i];
-        const int n = 2 * hf_layers_tiles_around(s), size = TILE >> s->level;
-        const size_t floats = (size_t)(hf_min(c->columns + n, l->columns + 2) * size + 2) *
-                              (size_t)(hf_min(c->rows + n, l->rows + 2) * size);
-        most = s->level && floats > most ? floats : most;
-    }
-    return most;
-}
-
-struct taker {
-    const struct cover *to;
-    int channels, x0, y0;  // the first pixel of the coverage
-};
-
-static void take_row(void *cookie, const float *in, ptrdiff_t channel, int x, int y, int n)
-{
-    const struct taker *t = cookie;
-    const struct cover *p = t->to;
-    const int from = hf_max(x, t->x0), end = hf_min(x + n, t->x0 + p->columns);
-    const int row = y - t->y0;
-    float *out = p->at + (ptrdiff_t)row * p->columns;
-    for (int i = from; i < end; i++)
-        out[i - t->x0] += in[t->channels * channel + i - x];
-    p->first[row] = hf_min(from - t->x0, p->first[row]);
-    p->end[row] = hf_max(end - t->x0, p->end[row]);
-}
-
-// Take the weights of a slice's samples of a kind, if they reach the cell. any: whether something is there already.
-static int take_weights(struct hf_cell *c, int i, enum hf_kind kind, const struct cover *p, int any)
-{
-    const struct hf_layers *l = c->l;
-    const int hidden = kind == HF_KIND_HIDDEN, quads = hidden && !l->known;
-    const struct hf_samples *samples = c->samples;
-    const struct hf_slice *of = hf_layers_table(l, kind) + i;
-    const struct hf_layers_set *set = hidden ? &samples->hidden : &samples->seen;
-    if (!hf_layers_mark_used(c, i, kind))
-        return any;
-    c->box = (struct hf_rect){hf_max(c->box.x0, p->tiles.x0), hf_max(c->box.y0, p->tiles.y0),
-                              hf_min(c->box.x1, p->tiles.x1), hf_min(c->box.y1, p->tiles.y1)};
-    if (c->box.x0 >= c->box.x1 || c->box.y0 >= c->box.y1)
-        return any;
-    for (int y = 0; !any && y < p->rows; y++) {
-        p->first[y] = p->columns;
-        p->end[y] = 0;
-    }
-    if (!any)
-        memset(p->at, 0, sizeof(float) * (size_t)p->columns * (size_t)p->rows);
-    struct hf_slice s = *of;
-    s.level = c->l->slice[i].level;
-    s.scale = 1 / (float)(1 << 2 * (s.level - quads));
-    const struct hf_build b = {.s = &s,
-                               .set = set,
-                               .weight = set->weight,
-                               .finest = quads,
-                               .first = l->channels,
-                               .channels = l->channels + 1,
-                               .more = hidden ? &samples->beyond : &samples->mixed};
-    struct taker to = {
-        .to = p, .channels = l->channels, .x0 = p->tiles.x0 * (TILE >> s.level), .y0 = p->tiles.y0 * (TILE >> s.level)};
-    hf_layers_take_sources(c, &b, take_row, &to);
-    return 1;
-}
-
-// ---- what is cut ----
-
-// How far slices lie apart.
-static float apart_at(const struct hf_layers *l, float radius)
-{
-    return hf_larger(l->set.spacing, fabsf(radius) * (1.0f / 32));
-}
-
-// How far the disc of a lamp goes that is `size` pixels wide and high: it is drawn with the radius of a slice, pictures of
-// the aperture have corners outside a disc, and upsampling goes 3 pixels farther.
-static float reach_of(const struct hf_layers *l, float radius, float size)
-{
-    const float r = fabsf(radius) + apart_at(l, radius);
-    return r * (1 + fabsf(l->chromatic)) * (l->key.picture ? 1.42f : 1) + 1.42f * size + 3;
-}
-
-// What is bright in a square of the frame, as far as it lies on the stack's side of the focus. Returns 0 if nothing is.
-static int find_lamp(const struct hf_cell *c, int stack, int x0, int y0, struct lamp *lamp)
-{
-    const struct hf_layers_set *s = &c->samples->seen;
-    struct lamp sum = {0};
-    float most = 0;
-    int left = SQUARE, right = 0, top = SQUARE, low = 0;
-    for (int y = 0; y < SQUARE; y++)
-        for (int x = 0; x < SQUARE; x++) {
-            const ptrdiff_t at = (y0 + y) * s->stride + x0 + x;
-            const float share = c->samples->share[at], r = s->radius[at];
-            if (!(share > 0) || (r < 0) != (stack == NEAR))
-                continue;
-            // Less than the largest float, whatever is summed up.
-            const float light = share * (s->colour[0][at] + s->colour[1][at] + s->colour[2][at]) * 0x1p-20f;
-            sum.x += light * (float)x;
-            sum.y += light * (float)y;
-            sum.radius += light * r;
-            sum.light += light;
-            most = hf_larger(fabsf(r), most);
-            left = hf_min(x, left);
-            right = hf_max(x, right);
-            top = hf_min(y, top);
-            low = y;
-        }
-    if (!(sum.light > 0))
-        return 0;
-    const float one = 1 / sum.light;
-    *lamp = (struct lamp){sum.x * one + 0.5f, sum.y * one + 0.5f, sum.radius * one, sum.light,
-                          reach_of(c->l, most, (float)(hf_max(right - left, low - top) + 1))};
-    return 1;
-}
-
-static int tile_of(float x)
-{
-    return (int)floorf(x * (1.0f / TILE));
-}
-
-// The lamps of a tile. Returns 0 if it has none whose discs reach the cell.
-static int find_lamps(const struct hf_cell *c, int stack, int tx, int ty, struct lamps *to)
-{
-    const struct hf_rect around = hf_layers_tiles_with_samples(c);
-    const int x0 = c->x0 + hf_layers_within(tx, around.x0, around.x1) * TILE,
-              y0 = c->y0 + hf_layers_within(ty, around.y0, around.y1) * TILE;
-    *to = (struct lamps){.tx = tx, .ty = ty, .tiles = {c->columns, c->rows, 0, 0}};
-    for (int i = 0; i < SQUARES; i++) {
-        struct lamp *p = &to->lamp[to->count];
-        const int dx = i % 2 * SQUARE, dy = i / 2 * SQUARE;
-        if (!find_lamp(c, stack, x0 + dx, y0 + dy, p))
-            continue;
-        p->x += (float)dx;
-        p->y += (float)dy;
-        const float high = p->reach + 1, wide = high * hf_larger(c->l->wide, 1), x = p->x + (float)(tx * TILE),
-                    y = p->y + (float)(ty * TILE);
-        struct hf_rect *r = &to->tiles;
-        *r = (struct hf_rect){hf_max(hf_min(tile_of(x - wide), r->x0), 0), hf_max(hf_min(tile_of(y - high), r->y0), 0),
-                              hf_min(hf_max(tile_of(x + wide) + 1, r->x1), c->columns),
-                              hf_min(hf_max(tile_of(y + high) + 1, r->y1), c->rows)};
-        to->light += p->light;
-        to->count++;
-    }
-    to->row = (to->tiles.x1 - to->tiles.x0) * TILE / 2 + 2;
-    return to->count && to->tiles.x0 < to->tiles.x1 && to->tiles.y0 < to->tiles.y1;
-}
-
-// How far a slice lies before a lamp: not at all if they may belong to one surface.
-static float is_before(const struct hf_layers *l, const struct lamp *p, const struct hf_slice *s)
-{
-    return hf_saturate((p->radius - s->radius) / (2 * apart_at(l, p->radius)) - 0.5f);
-}
-
-// A lamp and a slice before it. All places are counted from the corner of the lamp's tile.
-struct passing {
-    const struct lamp *lamp;
-    float part, wide, high;  // a ray passes this part of the way from its pixel to the lamp, and at most so far from it
-    float size, much;        // 1 / pixels of a sample of the coverage; how much the lamp counts
-    const struct cover *by;
-    int x0, y0;  // the first sample of the coverage
-};
-
-// Where a ray from pixel x of half resolution to a lamp passes, in samples of the coverage.
-static float passes_at(int x, float lamp, float part, float most, float size)
-{
-    const float at = 2 * (float)x + 1;
-    return (at + hf_edges_between(part * (lamp - at), -most, most)) * size - 0.5f;
-}
-
-// floorf() without a call.
-static int whole_of(float v)
-{
-    const int i = (int)v;
-    return i - (v < (float)i);
-}
-
-// Add what is cut from pixels x0 to x1 of a row of a lamp's disc. line: scratch for a row of coverage.
-static void cut_row(const struct passing *w, int x0, int x1, int y, float *out, float *line)
-{
-    const struct cover *by = w->by;
-    const float at = passes_at(y, w->lamp->y, w->part, w->high, w->size), v = at - (float)whole_of(at);
-    const int n = by->columns, upper = hf_layers_within(whole_of(at) - w->y0, 0, by->rows - 1),
-              lower = hf_layers_within(whole_of(at) + 1 - w->y0, 0, by->rows - 1);
-    const float *a = by->at + (ptrdiff_t)upper * n, *b = by->at + (ptrdiff_t)lower * n;
-    // The samples that the row's rays pass lie between these. Beyond the coverage its last columns are repeated.
-    const int from = whole_of((2 * (float)x0 + 1 - w->wide) * w->size - 0.5f),
-              end = whole_of((2 * (float)x1 - 1 + w->wide) * w->size - 0.5f) + 2,
-              first = hf_min(by->first[upper], by->first[lower]), last = hf_max(by->end[upper], by->end[lower]);
-    if (first >= last || (last < n && from - w->x0 >= last) || (first > 0 && end - w->x0 <= first))
-        return;
-    for (int x = from; x < end; x++) {
-        const int i = hf_layers_within(x - w->x0, 0, n - 1);
-        line[x - from] = ((1 - v) * a[i] + v * b[i]) * w->much;
-    }
-    for (int x = x0; x < x1; x++) {
-        const float u = passes_at(x, w->lamp->x, w->part, w->wide, w->size);
-        const int i = whole_of(u);
-        const float *pair = line + i - from;
-        out[x] += pair[0] + (u - (float)i) * (pair[1] - pair[0]);
-    }
-}
-
-// Add what a slice cuts from the discs of a tile's lamps.
-static void cut_lamps(const struct hf_cell *c, const struct cover *by, const struct hf_slice *s, struct lamps *t)
-{
-    const int size = TILE / 2, step = TILE >> s->level;
-    const struct hf_rect r = {(t->tiles.x0 - t->tx) * size - 1, (t->tiles.y0 - t->ty) * size - 1,
-                              (t->tiles.x1 - t->tx) * size + 1, (t->tiles.y1 - t->ty) * size + 1};
-    for (int i = 0; i < t->count; i++) {
-        const struct lamp *p = &t->lamp[i];
-        const float radius = fabsf(s->radius);
-        const struct passing w = {.lamp = p,
-                                  .part = s->radius / p->radius,
-                                  .wide = radius * c->l->wide,
-                                  .high = radius,
-                                  .size = 1 / (float)(1 << s->level),
-                                  .much = is_before(c->l, p, s) * (p->light / t->light),
-                                  .by = by,
-                                  .x0 = (by->tiles.x0 - t->tx) * step,
-                                  .y0 = (by->tiles.y0 - t->ty) * step};
-        for (int y = r.y0; w.much > 0 && y < r.y1; y++) {
-            const float dy = 2 * (float)y + 1 - p->y, square = p->reach * p->reach - dy * dy,
-                        half = square > 0 ? sqrtf(square) * hf_larger(c->l->wide, 1) : 0;
-            const int x0 = hf_max((int)floorf((p->x - half) / 2), r.x0),
-                      x1 = hf_min((int)ceilf((p->x + half) / 2), r.x1);
-            if (x0 < x1 && half > 0)
-                cut_row(&w, x0, x1, y, t->at + (t->ty * size + y) * t->row + t->tx * size, c->line[0]);
-        }
-    }
-}
-
-static size_t floats_of(const struct lamps *t)
-{
-    return (size_t)t->row * (size_t)((t->tiles.y1 - t->tiles.y0) * TILE / 2 + 2);
-}
-
-// Subtract what is cut from the lamps of a tile.
-static void draw_cut(struct hf_cell *c, int stack, const struct lamps *t)
+void hf_layers_cut_light(struct hf_cell *c, int stack, int tx, int ty, const struct hf_layers_cut *t)
 {
     const struct hf_layers *l = c->l;
     for (int i = 0; i < l->shines && !hf_stopped(l->stop); i++)
-        if (is_of(l, stack, i) && hf_layers_use_tile(c, t->tx, t->ty, i) &&
+        if (is_of(l, stack, i) && hf_layers_use_tile(c, tx, ty, i) &&
             hf_layers_mark_touched(c, &l->shine[i], &c->shone)) {
             draw(c, i);
             add_light(c, stack, i, t);
         }
-}
-
-// The tiles of the cell that discs of lamps behind a slice reach.
-static struct hf_rect reached_behind(const struct hf_cell *c, const struct hf_slice *s, const struct lamps *t,
-                                     int count)
-{
-    struct hf_rect r = {c->columns, c->rows, 0, 0};
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < t[k].count; i++)
-            if (is_before(c->l, &t[k].lamp[i], s) > 0) {
-                const struct hf_rect a = t[k].tiles;
-                r = (struct hf_rect){hf_min(r.x0, a.x0), hf_min(r.y0, a.y0), hf_max(r.x1, a.x1), hf_max(r.y1, a.y1)};
-            }
-    return r;
-}
-
-// Look at tiles with lamps, and cut their discs.
-static void cut_tiles(struct hf_cell *c, int stack, struct lamps *t, int count)
-{
-    const struct hf_layers *l = c->l;
-    for (int i = 0; count && i < l->slices && !hf_stopped(l->stop); i++) {
-        const struct hf_slice *s = &l->slice[i];
-        struct cover p;
-        if (s->level == 0)
-            continue;
-        const struct hf_rect r = reached_behind(c, s, t, count);
-        if (r.x0 >= r.x1 || r.y0 >= r.y1)
-            continue;
-        shape_cover(c, s, r, &p);
-        int any = take_weights(c, i, HF_KIND_SEEN, &p, 0);
-        any = l->levels ? take_weights(c, i, HF_KIND_HIDDEN, &p, any) : any;
-        for (int k = 0; any && k < count; k++)
-            cut_lamps(c, &p, s, &t[k]);
-    }
-    for (int k = 0; k < count; k++) {
-        float any = 0;
-        for (size_t i = 0; i < floats_of(&t[k]); i++) {
-            t[k].cut[i] = hf_saturate(t[k].cut[i]);
-            any += t[k].cut[i];
-        }
-        if (any > 0)
-            draw_cut(c, stack, &t[k]);
-    }
-}
-
-size_t hf_layers_cut_floats(const struct hf_cell *c)
-{
-    return c->l->set.highlights ? 4 * (size_t)(c->columns * TILE / 2 + 2) * (size_t)(c->rows * TILE / 2 + 2) : 0;
-}
-
-// Look at all tiles with lamps, as many at once as there is room for.
-static void cut(struct hf_cell *c, int stack)
-{
-    const struct hf_layers *l = c->l;
-    const int n = l->most_tiles;
-    const size_t room = hf_layers_cut_floats(c);
-    struct lamps tile[MOST];
-    int count = 0;
-    size_t used = 0;
-    for (int ty = -n; ty < c->rows + n && !hf_stopped(l->stop); ty++)
-        for (int tx = -n; tx < c->columns + n; tx++) {
-            struct lamps t;
-            if (*hf_layers_map_at(&c->plain, tx, ty) & DULL || !find_lamps(c, stack, tx, ty, &t))
-                continue;
-            const size_t need = floats_of(&t);
-            if (count == MOST || used + need > room) {
-                cut_tiles(c, stack, tile, count);
-                used = 0;
-                count = 0;
-            }
-            t.cut = c->cut_off + used;
-            t.at = t.cut - (t.tiles.y0 * TILE / 2 - 1) * t.row - (t.tiles.x0 * TILE / 2 - 1);
-            memset(t.cut, 0, sizeof(float) * need);
-            tile[count++] = t;
-            used += need;
-        }
-    cut_tiles(c, stack, tile, count);
 }
 
 void hf_layers_draw_lights(struct hf_cell *c, int stack)
@@ -482,7 +98,7 @@ void hf_layers_draw_lights(struct hf_cell *c, int stack)
             any = 1;
         }
     if (any)
-        cut(c, stack);
+        hf_layers_cut_lamps(c, stack);
 }
 
 // How much of the light behind the focus the middle stack leaves, of what the near stack leaves open: that has cut the light

@@ -171,11 +171,24 @@ void hf_layers_begin_shape(const struct hf_cell *c, const struct hf_slice *s);
 void hf_layers_draw_shape(const struct hf_cell *c, const struct hf_build *b, const float *in, int y, int x0, int x1,
                           const struct hf_window *to);
 
-// lights.c
+// cut.c
 // Floats for the coverage of a slice around a cell.
 size_t hf_layers_cover_floats(const struct hf_cell *c);
 // Floats for what is cut from discs.
 size_t hf_layers_cut_floats(const struct hf_cell *c);
+// Cut the discs of the lamps on one side of the focus, which are drawn already.
+void hf_layers_cut_lamps(struct hf_cell *c, int stack);
+
+// lights.c
+// For each pixel of some tiles of a cell at half resolution, and one more on every side: the part of the light of one tile's
+// lamps that is cut there.
+struct hf_layers_cut {
+    struct hf_rect tiles;
+    float *at;  // where the cell's first pixel would be
+    ptrdiff_t row;
+};
+// Subtract what is cut from the light of the lamps of tile (tx, ty).
+void hf_layers_cut_light(struct hf_cell *c, int stack, int tx, int ty, const struct hf_layers_cut *t);
 // Draw the highlights on one side of the focus, NEAR or FAR, with their coverage, as they shine through all that is in front of
 // them but the middle stack. Call for FAR after the last slice.
 void hf_layers_draw_lights(struct hf_cell *c, int stack);

@@ -4,6 +4,7 @@
 
 #include "engine/layers/blur_simd.h"
 #include "engine/layers/composite_simd.h"
+#include "engine/layers/cut_simd.h"
 #include "engine/layers/hidden_simd.h"
 #include "engine/layers/highlights_simd.h"
 #include "engine/layers/patterns_simd.h"
@@ -39,5 +40,7 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->up = layers_up_simd;
     k->blend = layers_blend_simd;
     k->finish = layers_finish_simd;
+    k->dim = layers_dim_simd;
+    k->passed = layers_passed_simd;
     k->views = layers_views_simd;
 }
