@@ -60,6 +60,11 @@ check "one at a time where there is little memory" says "one at a time"
 check "backwards" files a "shot.0002.exr shot.0004.exr shot.0006.exr"
 check "the limit changes no bit" cmp a/shot.0004.exr good/shot.0004.exr
 rm -f a/*
+# Two threads share a frame, but a process that decodes or encodes whole frames works on one thread.
+run in/shot.####.exr -o a/shot.####.exr $quick --threads 2 --dry-run
+check "a frame for every two threads" grep -q ", 1 at a time" out
+run in/shot.####.exr -o a/shot.####.exr $quick --threads 2 --dry-run --compression dwaa
+check "a frame for every thread where another process encodes it" grep -q ", 2 at a time" out
 # The frames after a tiny one are many times its size: when memory is short they wait for each other.
 mkdir grow
 cp "$source_root/tests/fuzz/corpus/exr/none.exr" grow/g.0001.exr

@@ -48,6 +48,7 @@ struct batch {
     struct cli_guess *guesses;     // --guessed: of each frame the view of which most was guessed
     int measuring;                 // one frame at a time, to measure its memory:
     double frame_bytes;
+    int helped;  // another process reads or writes it
     struct cli_room room;
 };
 
@@ -167,6 +168,7 @@ static void finish(struct batch *b, struct cli_frame *frame, const struct cli_se
         // The process's peak may come from an earlier look at the shot, so this frame's memory is calculated.
         if (b->measuring) {
             b->frame_bytes = cli_plan_frame_bytes(frame, (double)report.all.memory_held);
+            b->helped = hf_io_is_helped(frame->file, frame->args->output, frame->args->compression);
         }
         describe(frame, &report, r->ms, text, sizeof(text));
         atomic_fetch_add(&b->chosen[report.all.budget_step < MAX_STEPS ? report.all.budget_step : MAX_STEPS - 1], 1);
@@ -316,7 +318,7 @@ static int run_rest(struct batch *b, struct tool_error *error)
     if (left <= 0)
         return 0;
     const int workers =
-        cli_plan_workers(b->args, left, waiting(&b->progress) / b->threads, b->room.base, b->frame_bytes);
+        cli_plan_workers(b->args, left, b->helped, waiting(&b->progress) / b->threads, b->room.base, b->frame_bytes);
     // If the last round has fewer frames than workers, each of its frames gets more threads.
     const int last = left % workers, alone = last && threads / last > 1 && threads / last > threads / workers;
     int status = run_some(b, alone ? left - last : left, workers, error);

@@ -74,16 +74,16 @@ double cli_plan_memory_limit(const struct cli_args *args)
 
 // Two threads make a frame in half the time, with half the memory of two frames, whose pages the system has to find
 // and clear first. But both threads wait while that frame waits for the disk. If that takes long, each thread gets a
-// frame of its own.
-static int busy_with(int threads, double wait)
+// frame of its own; so it does if another process reads or writes frames, which mostly works on one thread.
+static int busy_with(int threads, int helped, double wait)
 {
-    return wait < LITTLE_WAIT ? (threads + 1) / 2 : (int)lround(threads * (1 + fmin(wait, MOST_WAIT)));
+    return wait < LITTLE_WAIT && !helped ? (threads + 1) / 2 : (int)lround(threads * (1 + fmin(wait, MOST_WAIT)));
 }
 
-int cli_plan_workers(const struct cli_args *args, int frames, double wait, double base, double frame_bytes)
+int cli_plan_workers(const struct cli_args *args, int frames, int helped, double wait, double base, double frame_bytes)
 {
     const double limit = cli_plan_memory_limit(args), fit = floor((limit - base) / frame_bytes);
-    const int busy = busy_with(cli_plan_threads(args), wait);
+    const int busy = busy_with(cli_plan_threads(args), helped, wait);
     const int most = frames < 1 ? 1 : frames < busy ? frames : busy;
     if (fit < 1)
         tool_print_line("a frame takes %.2f GiB, more than the limit of %.3g GiB: one at a time",

@@ -57,7 +57,8 @@ struct cli_expected cli_expect(const struct cli_frame *frame, const struct cli_s
     const double defocus = frame->view_count * report.all.predicted_ms;
     const double files = frame->ms[CLI_READ] + frame->ms[CLI_DECODE] * (1 + ENCODE_BY_DECODE);
     return (struct cli_expected){session->base, cli_plan_frame_bytes(frame, (double)report.all.memory_needed),
-                                 files + defocus, defocus};
+                                 files + defocus, defocus,
+                                 hf_io_is_helped(frame->file, frame->args->output, frame->args->compression)};
 }
 
 // Look at a frame as if to render it.
@@ -76,7 +77,7 @@ static int expect(const struct cli_plan *plan, int left, struct tool_error *erro
         status = cli_frame_plan(&frame, &session, error);
     if (!status) {
         const struct cli_expected e = cli_expect(&frame, &session);
-        const int workers = cli_plan_workers(&args, plan->shot->jobs.count, 0, e.base, e.bytes);
+        const int workers = cli_plan_workers(&args, plan->shot->jobs.count, e.helped, 0, e.base, e.bytes);
         printf("%d frames, %d at a time; a frame takes about %.0f MiB, all at once %.0f MiB\n", left, workers,
                e.bytes / (1 << 20), (e.base + workers * e.bytes) / (1 << 20));
         printf("expected: %.0f ms for a frame alone, defocus %.0f ms of it; about %.0f s for all\n", e.ms, e.defocus_ms,

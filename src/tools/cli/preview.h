@@ -12,6 +12,7 @@
 // to decode.
 struct cli_expected {
     double base, bytes, ms, defocus_ms;
+    int helped;  // hf_io_is_helped
 };
 struct cli_expected cli_expect(const struct cli_frame *frame, const struct cli_session *session);
 

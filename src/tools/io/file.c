@@ -439,6 +439,17 @@ const char *hf_io_sandbox(void)
     return hf_oiio_sandbox();
 }
 
+int hf_io_is_helped(const struct hf_io_file *file, const char *path, const char *compression)
+{
+    const int wanted = compression ? hf_exr_compression(compression) : -1;
+    if (!file->exr || (path && !hf_io_is_exr_name(path)) || (wanted >= 0 && hf_exr_is_dwa((exr_compression_t)wanted)))
+        return 1;
+    for (int i = 0; i < file->views.count; i++)
+        if (hf_exr_is_dwa(file->exr->parts[file->views.view[i].part].compression))
+            return 1;
+    return 0;
+}
+
 double hf_io_memory(const struct hf_io_file *file)
 {
     double bytes = file->exr ? (double)file->exr->size : 0;

@@ -191,6 +191,9 @@ int hf_io_has_oiio(void);
 // Bytes that an open file comes to hold until it is closed, its new one included, when all views are replaced: about, and
 // without the caller's planes.
 double hf_io_memory(const struct hf_io_file *file);
+// Whether another process reads the file, or writes the new one: path (may be NULL), with that compression (NULL: the file's
+// own). It makes one frame on one thread for most of the time.
+int hf_io_is_helped(const struct hf_io_file *file, const char *path, const char *compression);
 
 // What the sandbox in which formats other than EXR were read did not forbid, as one sentence; NULL if it was whole, or
 // nothing was read so.

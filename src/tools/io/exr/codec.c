@@ -70,7 +70,7 @@ int hf_exr_codec_read(struct hf_exr *e, int p, uint8_t *samples, int threads, st
     struct names names;
     int status = describe(e, p, threads, &s, &names, err);
     if (!status) {
-        s.data = tiled ? malloc(part->layout.bytes + 1) : samples;
+        s.data = tiled ? hf_io_alloc(part->layout.bytes + 1) : samples;
         status = s.data ? e->dwa->read(e->path, p, &s, err) : hf_io_fail(err, "%s: out of memory", e->path);
     }
     if (tiled) {
@@ -88,19 +88,18 @@ int hf_exr_codec_write(struct hf_exr *e, int p, exr_compression_t compression, c
     const struct hf_exr_part *part = &e->parts[p];
     struct hf_io_samples s;
     struct names names;
+    const bool tiled = part->storage == EXR_STORAGE_TILED;
     float level = 0;
-    uint8_t *rows = malloc(part->layout.bytes + 1);
+    uint8_t *rows = tiled ? hf_io_alloc(part->layout.bytes + 1) : NULL;
     if (exr_attr_get_float(e->core, p, "dwaCompressionLevel", &level) != EXR_ERR_SUCCESS)
         level = 0;
     int status = describe(e, p, threads, &s, &names, err);
-    if (!status && !rows)
+    if (!status && tiled && !rows)
         status = hf_io_fail(err, "%s: out of memory", e->path);
     if (!status) {
-        if (part->storage == EXR_STORAGE_TILED)
+        if (tiled)
             regroup(part, rows, (uint8_t *)samples, true);
-        else
-            memcpy(rows, samples, part->layout.bytes);
-        s.data = rows;
+        s.data = tiled ? rows : (uint8_t *)samples;  // which are only read
         status = e->dwa->write(made, e->path, &s, hf_exr_compression_name(compression), level, err);
     }
     free(rows);

@@ -12,11 +12,28 @@ size_t type_bytes(int type)
     return type == 1 ? 2 : 4;
 }
 
-// Between OpenEXR's rows of channels and OpenImageIO's pixels of channels: one channel of one row.
-void copy_strided(uint8_t *to, size_t to_step, const uint8_t *from, size_t from_step, size_t bytes, int n)
+template <size_t bytes> void copy_each(uint8_t *to, size_t to_step, const uint8_t *from, size_t from_step, int n)
 {
     for (int i = 0; i < n; i++)
         memcpy(to + (size_t)i * to_step, from + (size_t)i * from_step, bytes);
+}
+
+// Between OpenEXR's rows of channels and OpenImageIO's pixels of channels: one channel of one row.
+void copy_strided(uint8_t *to, size_t to_step, const uint8_t *from, size_t from_step, size_t bytes, int n)
+{
+    if (bytes == 2)
+        copy_each<2>(to, to_step, from, from_step, n);
+    else
+        copy_each<4>(to, to_step, from, from_step, n);
+}
+
+// Memory for all pixels, which is not cleared.
+std::unique_ptr<uint8_t[], decltype(&free)> pixels_of(size_t step, const hf_io_samples *s)
+{
+    auto *const pixels = (uint8_t *)hf_io_alloc(step * (size_t)s->width * (size_t)s->height + 1);
+    if (!pixels)
+        throw std::bad_alloc();
+    return {pixels, free};
 }
 
 void set_threads(const hf_io_samples *s)
@@ -38,8 +55,8 @@ int read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
         return hf_io_fail(err, "%s: truncated or corrupt: OpenImageIO finds %d x %d pixels in part %d, not %d x %d",
                           path, spec.width, spec.height, part, s->width, s->height);
     const size_t step = spec.pixel_bytes(true);
-    std::vector<uint8_t> pixels(step * (size_t)s->width * (size_t)s->height);
-    if (!input.in->read_image(part, 0, 0, spec.nchannels, TypeDesc::UNKNOWN, pixels.data()))
+    const auto pixels = pixels_of(step, s);
+    if (!input.in->read_image(part, 0, 0, spec.nchannels, TypeDesc::UNKNOWN, pixels.get()))
         return input.fail(path, err);
     size_t at = 0;
     for (int c = 0; c < s->channel_count; c++) {
@@ -51,7 +68,7 @@ int read_samples(const char *path, int part, hf_io_samples *s, hf_io_error *err)
         const size_t offset = spec.pixel_bytes(0, from, true);
         for (int y = 0; y < s->height; y++)
             copy_strided(s->data + (size_t)y * s->row_bytes + at, bytes,
-                         pixels.data() + (size_t)y * (size_t)s->width * step + offset, step, bytes, s->width);
+                         pixels.get() + (size_t)y * (size_t)s->width * step + offset, step, bytes, s->width);
         at += bytes * (size_t)s->width;
     }
     return 0;
@@ -81,16 +98,16 @@ int write_samples(hf_io_bytes *made, const char *path, const hf_io_samples *s, c
     size_t step = 0, at = 0, offset = 0;
     for (int c = 0; c < s->channel_count; c++)
         step += type_bytes(s->types[c]);
-    std::vector<uint8_t> pixels(step * (size_t)s->width * (size_t)s->height);
+    const auto pixels = pixels_of(step, s);
     for (int c = 0; c < s->channel_count; c++) {
         const size_t bytes = type_bytes(s->types[c]);
         for (int y = 0; y < s->height; y++)
-            copy_strided(pixels.data() + (size_t)y * (size_t)s->width * step + offset, step,
+            copy_strided(pixels.get() + (size_t)y * (size_t)s->width * step + offset, step,
                          s->data + (size_t)y * s->row_bytes + at, bytes, bytes, s->width);
         offset += bytes;
         at += bytes * (size_t)s->width;
     }
-    return output.open(spec) ? -1 : output.write(TypeDesc::UNKNOWN, pixels.data(), made);
+    return output.open(spec) ? -1 : output.write(TypeDesc::UNKNOWN, pixels.get(), made);
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ static int serve_colour(struct job *job, const struct hf_wire_request *q)
         set_limits(12 * plane_bytes(v), file_size(job));
         for (int k = 0; k < 4; k++)
             n += (q->planes >> k & 1) && v->colour[k][0];
-        memory = malloc((size_t)n * size * sizeof(float) + 1);
+        memory = hf_io_alloc((size_t)n * size * sizeof(float) + 1);
         for (int k = 0, i = 0; k < 4 && memory; k++)
             if ((q->planes >> k & 1) && v->colour[k][0])
                 planes[k] = memory + (size_t)i++ * size;
@@ -125,7 +125,7 @@ static int serve_depth(struct job *job, const struct hf_wire_request *q)
     float *memory = NULL;
     if (job->oiio && v) {
         set_limits(12 * plane_bytes(v), file_size(job));
-        memory = malloc(plane_bytes(v) + 1);
+        memory = hf_io_alloc(plane_bytes(v) + 1);
         r.size = plane_bytes(v);
         r.status = !memory ? hf_io_fail(&r.err, "%s: out of memory", job->path)
                    : own   ? hf_oiio_read_depth(job->oiio, memory, &r.err)
@@ -152,7 +152,7 @@ static int serve_write(struct job *job, const struct hf_wire_request *q)
                                 .compression = q->has_name ? q->name : NULL,
                                 .source = q->source[0] ? q->source : NULL};
     const size_t size = plane_bytes(&q->view);
-    float *memory = malloc(4 * size + 1);
+    float *memory = hf_io_alloc(4 * size + 1);
     struct hf_io_bytes made = {0};
     r.status = memory ? 0 : hf_io_fail(&r.err, "%s: out of memory", q->path);
     for (int k = 0; k < 4 && memory; k++) {
@@ -189,7 +189,7 @@ static int serve_samples(struct job *job, const struct hf_wire_request *q)
     const size_t size = (size_t)s.height * s.row_bytes;
     s.names = pointers;
     s.types = types;
-    s.data = malloc(size + 1);
+    s.data = hf_io_alloc(size + 1);
     r.status = s.data ? 0 : hf_io_fail(&r.err, "%s: out of memory", q->path);
     if (!r.status && q->op == HF_WIRE_READ) {
         set_limits(4 * size + ((uint64_t)256 << 20), file_size(job));
