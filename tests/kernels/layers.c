@@ -49,6 +49,13 @@ static void unmix_call(struct world *w, const struct kernels *k, enum arena a)
     }
     set_of(w, a, IN, u.seen);
     set_of(w, a, IN + 6, u.mixed);
+    static float scratch[14][17 * 16 + 2 * ROOM];
+    uint8_t done[7][2 + 17 * 4] = {0};
+    for (int y = 0; y < 7; y++) {
+        u.light[y] = scratch[y] + ROOM;
+        u.square[y] = scratch[7 + y] + ROOM;
+        u.done[y] = done[y];
+    }
     k->layers.unmix(&u, w->n);
     w->result[a].returned = unmarked(any, u.mixed[4], w->n);
     // Without weight the other values are undefined.

@@ -172,6 +172,10 @@ struct hf_unmix_row {
     const float *radius[7], *colour[7][4], *sure[7], *middle, *slope;
     float *seen[6], *mixed[6];  // colour, weight (4), radius (5)
     uint8_t *any;               // [i] becomes 1 where any of pixels 16 i to 16 i + 15 is mixed
+    // Scratch of the vector bodies, kept from row to row: an eighth of the brightness, the sum of the colour's squares, and
+    // done[][1 + i], whether vector i has both. 49 pixels look at each.
+    float *light[7], *square[7];
+    uint8_t *done[7];
 };
 
 // A row of the sums of a stack. weight is the coverage by all slices so far, colour the sum of their colours times

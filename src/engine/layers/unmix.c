@@ -227,9 +227,27 @@ void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)
 
 enum { AROUND = 16 };  // margin of a row of scratch, in floats
 
+// A row of scratch holds whole vectors, and one more on either side.
+static ptrdiff_t stride_of(int width)
+{
+    return ((width + 15) & ~15) + 2 * AROUND;
+}
+
+// Floats that hold a byte for each vector of a row, however short.
+static size_t done_floats(ptrdiff_t stride)
+{
+    return (size_t)stride / 4 / sizeof(float) + 1;
+}
+
 size_t hf_layers_unmix_floats(int width)
 {
-    return 24 * ((size_t)width + 2 * AROUND) + HF_PAD;
+    const size_t stride = (size_t)stride_of(width);
+    return 8 * (5 * stride + done_floats((ptrdiff_t)stride)) + HF_PAD;
+}
+
+static uint8_t *done_at(float *ring, ptrdiff_t stride, int y)
+{
+    return (uint8_t *)(ring - AROUND + 40 * stride + (ptrdiff_t)done_floats(stride) * (y & 7));
 }
 
 // How surely each pixel of a row is not mixed (1: not mixed), into the row's place in the ring.
@@ -238,6 +256,7 @@ static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring,
     const struct hf_buf *b = &f->buf[HF_LAYERS_BUF_RADIUS];
     const float *radius[3];
     float *sure = ring + (y & 7) * stride;
+    memset(done_at(ring, stride, y), 0, done_floats(stride) * sizeof(float));
     for (int i = 0; i < 3; i++)
         radius[i] = hf_at(b, 0, x - AROUND, y + i - 1);
     // Widened to whole vectors; only three pixels on either side are read.
@@ -255,6 +274,9 @@ static void place_row(const struct hf_frame *f, int x, int y, float *ring, ptrdi
     for (int i = 0; i < 7; i++) {
         u->radius[i] = first[4] + i * radius->stride;
         u->sure[i] = ring + ((y + i - 3) & 7) * stride;
+        u->light[i] = ring + (24 + ((y + i - 3) & 7)) * stride;
+        u->square[i] = ring + (32 + ((y + i - 3) & 7)) * stride;
+        u->done[i] = done_at(ring, stride, y + i - 3);
         for (int c = 0; c < u->channels; c++)
             u->colour[i][c] = first[c] + i * colour->stride;
     }
@@ -273,7 +295,7 @@ void hf_layers_unmix_rows(const struct hf_frame *f, struct hf_rect r, int begin,
     const struct hf_layers *l = hf_layers(f->s);
     const int x = 2 * r.x0, n = hf_min(2 * r.x1, f->s->width) - x, y0 = 2 * r.y0, y1 = hf_min(2 * r.y1, f->s->height);
     struct hf_unmix_row u = {.channels = l->channels, .any = any};
-    const ptrdiff_t stride = n + 2 * AROUND;
+    const ptrdiff_t stride = stride_of(n);
     float *ring = f->work + AROUND;
     for (int y = y0 - 3; begin && l->edges && y < y0 + 3; y++)
         sure_row(f, x, n, y, ring, stride);

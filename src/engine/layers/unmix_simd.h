@@ -32,6 +32,26 @@ HF_INLINE vf layers_light_of(const struct hf_unmix_row *u, int y, int x)
                                vf_load(u->colour[y][2] + x));
 }
 
+// See to it that light and squares are there in the rows around a vector, and beside it.
+HF_INLINE void layers_prepare(const struct hf_unmix_row *u, int x, const int channels)
+{
+    for (int y = 0; y < 7; y++)
+        for (int i = -1; i < 2; i++) {
+            const int at = x + i * VF_N;
+            uint8_t *done = &u->done[y][1 + x / VF_N + i];
+            if (*done)
+                continue;
+            vf square = vf_zero();
+            for (int c = 0; c < channels; c++) {
+                const vf v = vf_load(u->colour[y][c] + at);
+                square = vf_fma(v, v, square);
+            }
+            vf_store(u->light[y] + at, layers_light_of(u, y, at));
+            vf_store(u->square[y] + at, square);
+            *done = 1;
+        }
+}
+
 // Turn the sums of a side into its mean. Returns the variance of its colours.
 HF_INLINE vf layers_finish(const int channels, vf counted, vf squares, vf *mean)
 {
@@ -124,14 +144,13 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
             const vf r = vf_load(u->radius[y] + at), f = vf_mul(w, layers_front(middle, slope, r)), b = vf_sub(w, f);
             weight[0] = vf_add(weight[0], f);
             weight[1] = vf_add(weight[1], b);
-            const vf counts = layers_dimmed(layers_light_of(u, y, at), plain);
+            const vf counts = layers_dimmed(vf_load(u->light[y] + at), plain);
             const vf front = vf_mul(f, counts), back = vf_mul(b, counts);
             counted[0] = vf_add(counted[0], front);
             counted[1] = vf_add(counted[1], back);
-            vf square = vf_zero();
+            const vf square = vf_load(u->square[y] + at);
             for (int c = 0; c < channels; c++) {
                 const vf v = vf_load(u->colour[y][c] + at);
-                square = vf_fma(v, v, square);
                 mean[0][c] = vf_fma(front, v, mean[0][c]);
                 mean[1][c] = vf_fma(back, v, mean[1][c]);
             }
@@ -203,6 +222,7 @@ HF_INLINE vf layers_lit(const struct hf_unmix_row *u, int x, vm mixed, vf mean[2
 HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const int channels, vm mixed)
 {
     vf mean[2][5], spread[2], known;
+    layers_prepare(u, x, channels);
     mixed = layers_sides(u, x, channels, mixed, mean, spread, &known);
     const vf own = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
     const vf a0 = layers_front(vf_load(u->middle + x), vf_load(u->slope + x), own);
