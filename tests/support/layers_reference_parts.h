@@ -79,6 +79,7 @@ static inline double radius_at(const struct frame *f, int x, int y)
 // covers.
 struct layers_run {
     double a, b, weight;
+    double top, low;  // the heights between which its outline covers the row, from the row's middle
 };
 
 // A shape of radius r: weights of (2 reach + 1)^2 pixels that sum to 1, and the three runs of each row.

@@ -75,14 +75,15 @@ static struct layers_run outline(const struct frame *f, double r, int dy)
     // Half a turn of an even number of sides is none.
     const double rotation = a->rotation + (f->turned && a->blades % 2 ? 180.0f : 0);
     struct side side[16];
-    double cut[2 + 3 * 16] = {(dy - 0.5) / r, (dy + 0.5) / r}, hit = 0, left = 0, right = 0;
+    double cut[2 + 3 * 16] = {(dy - 0.5) / r, (dy + 0.5) / r}, hit = 0, left = 0, right = 0, top = INFINITY,
+                       low = -INFINITY;
     int cuts = 2;
     if (!a->blades) {
         const double u = fmax(dy - 0.5, -r), v = fmin(dy + 0.5, r);
         const double h =
             v > u ? (v * sqrt(r * r - v * v) + r * r * asin(v / r) - u * sqrt(r * r - u * u) - r * r * asin(u / r)) / 2
                   : 0;
-        return (struct layers_run){-h * f->wide, h * f->wide, h > 0};
+        return (struct layers_run){-h * f->wide, h * f->wide, h > 0, -0.5, 0.5};
     }
     for (int i = 0; i < a->blades; i++) {
         side[i] = side_of(a, rotation, i);
@@ -99,26 +100,28 @@ static struct layers_run outline(const struct frame *f, double r, int dy)
             continue;
         integrate(side, a->blades, cut[i], cut[i + 1], &left, &right);
         hit += cut[i + 1] - cut[i];
+        top = fmin(top, cut[i] * r - dy);
+        low = fmax(low, cut[i + 1] * r - dy);
     }
-    return hit * r > 1e-6 ? (struct layers_run){left / hit * r * f->wide, right / hit * r * f->wide, hit * r}
-                          : (struct layers_run){0, 0, 0};
+    return hit * r > 1e-6 ? (struct layers_run){left / hit * r * f->wide, right / hit * r * f->wide, hit * r, top, low}
+                          : (struct layers_run){0};
 }
 
 // Row dy of a shape: up to three runs.
 static void make_row(const struct frame *f, double r, int dy, struct layers_run run[3])
 {
     const struct layers_run o = outline(f, r, dy);
-    struct layers_run hole = {0, 0, 0};
+    struct layers_run hole = {0};
     if (f->aperture.ring > 0)
         hole = outline(f, r * f->aperture.ring, dy);
     hole.a = fmax(hole.a, o.a);
     hole.b = fmin(hole.b, o.b);
     run[0] = o;
-    run[1] = run[2] = (struct layers_run){0, 0, 0};
+    run[1] = run[2] = (struct layers_run){0};
     if (hole.weight > 0 && hole.b > hole.a) {
         run[0].b = hole.a;
-        run[1] = (struct layers_run){hole.a, hole.b, o.weight - hole.weight};
-        run[2] = (struct layers_run){hole.b, o.b, o.weight};
+        run[1] = (struct layers_run){hole.a, hole.b, o.weight - hole.weight, o.top, o.low};
+        run[2] = (struct layers_run){hole.b, o.b, o.weight, o.top, o.low};
     }
 }
 
@@ -196,8 +199,11 @@ void layers_shape_cut(const struct frame *f, struct layers_shape *s, double x, d
     if (f->aperture.picture && s->r > 0)
         sum = picture_shape(f, s->r, s->reach, s->weight);
     for (int i = 0; i < side && !f->aperture.picture; i++) {
-        const double low = i - s->reach - 0.5 - y,
-                     half = isinf(r) ? r : f->wide * (half_circle(r, low + 1) - half_circle(r, low));
+        // The circle's mean width over the same heights as the outline's.
+        const double top = i - s->reach + s->run[3 * i].top - y, low = i - s->reach + s->run[3 * i].low - y,
+                     half = isinf(r)    ? r
+                            : low > top ? f->wide * (half_circle(r, low) - half_circle(r, top)) / (low - top)
+                                        : 0;
         for (int k = 3 * i; k < 3 * i + 3; k++)
             sum += cover(s->weight + i * side, s->reach, fmax(s->run[k].a, x - half), fmin(s->run[k].b, x + half),
                          s->run[k].weight);

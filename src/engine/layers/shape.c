@@ -48,11 +48,12 @@ static double along(const struct hf_side *s, double u, double v, int right)
     return s->cx * (v - u) + (right ? w : -w);
 }
 
-// One row of a shape of radius 1, from height u to v: its ends, and returns its weight, 0 if the row is empty.
-static double polygon_row(const struct maker *m, double u, double v, double *a, double *b)
+// One row of a shape of radius 1, from height u to v: its ends, the heights that it covers, and returns its weight, 0 if
+// the row is empty.
+static double polygon_row(const struct maker *m, double u, double v, double *a, double *b, double *top, double *low)
 {
     double hit = 0, from = u;
-    *a = *b = 0;
+    *a = *b = *top = *low = 0;
     for (int i = 0; i <= m->corners; i++) {
         const double to = i < m->corners ? m->corner[i] : v;
         double left, right;
@@ -62,6 +63,8 @@ static double polygon_row(const struct maker *m, double u, double v, double *a, 
         if (hf_aperture_run(m->side, m->sides, (from + to) / 2, &left, &right, of)) {
             *a += along(&m->side[of[0]], from, to, 0);
             *b += along(&m->side[of[1]], from, to, 1);
+            *top = hit > 0 ? *top : from;
+            *low = to;
             hit += to - from;
         }
         from = to;
@@ -73,13 +76,17 @@ static double polygon_row(const struct maker *m, double u, double v, double *a, 
     return hit / (v - u);
 }
 
-// Row dy of an outline of radius r. Discs have the same rows as in slices.c.
-static struct hf_shape_end outline(const struct maker *m, double r, int dy)
+// Row dy of an outline of radius r, and the heights that it covers. Discs have the same rows as in slices.c.
+static struct hf_shape_end outline(const struct maker *m, double r, int dy, struct hf_shape_row *row)
 {
     const double wide = m->key->wide;
+    row->top = -0.5f;
+    row->low = 0.5f;
     if (m->sides) {
-        double a, b;
-        const double weight = polygon_row(m, (dy - 0.5) / r, (dy + 0.5) / r, &a, &b);
+        double a, b, top, low;
+        const double weight = polygon_row(m, (dy - 0.5) / r, (dy + 0.5) / r, &a, &b, &top, &low);
+        row->top = (float)(top * r - dy);
+        row->low = (float)(low * r - dy);
         return (struct hf_shape_end){(float)(a * r * wide), (float)(b * r * wide), weight > 1e-6 ? (float)weight : 0};
     }
     const double h = (hf_half_disc(r, dy + 0.5) - hf_half_disc(r, dy - 0.5)) * wide;
@@ -95,12 +102,14 @@ static int put(struct hf_shape_end *out, int n, float a, float b, float weight)
 
 // The runs of row dy of a shape; returns how many. A ring's hole takes the middle run away, or makes it lighter where
 // the hole covers only a part of the row's height.
-static int make_row(const struct maker *m, double r, int dy, struct hf_shape_end out[HF_SHAPE_RUNS])
+static int make_row(const struct maker *m, double r, int dy, struct hf_shape_row *row,
+                    struct hf_shape_end out[HF_SHAPE_RUNS])
 {
-    const struct hf_shape_end o = outline(m, r, dy);
+    const struct hf_shape_end o = outline(m, r, dy, row);
     struct hf_shape_end hole = {0};
+    struct hf_shape_row unused;
     if (m->key->ring > 0)
-        hole = outline(m, r * m->key->ring, dy);
+        hole = outline(m, r * m->key->ring, dy, &unused);
     hole.a = hole.a > o.a ? hole.a : o.a;
     hole.b = hole.b < o.b ? hole.b : o.b;
     if (!(hole.weight > 0 && hole.b > hole.a))
@@ -138,7 +147,8 @@ static void make_shape(struct hf_shape *s, const struct maker *m, struct hf_shap
     s->sum = 0;
     s->reach = s->windows = 0;
     for (int i = 0; i < s->rows; i++) {
-        row[i] = (struct hf_shape_row){n, make_row(m, s->radius, s->top + i, end + n), 0};
+        row[i] = (struct hf_shape_row){.first = n};
+        row[i].count = make_row(m, s->radius, s->top + i, &row[i], end + n);
         for (int j = n; j < n + row[i].count; j++) {
             run[j] = hf_shape_run_of(end[j].a, end[j].b, end[j].weight);
             s->sum += (double)end[j].weight * ((double)end[j].b - end[j].a);

@@ -20,6 +20,7 @@ struct hf_shape_run {
 
 struct hf_shape_row {
     int first, count, left;  // first and count of its runs or weights; left: column of the first weight
+    float top, low;          // the heights between which the outline covers a row of runs, pixels from the row's middle
 };
 
 enum { HF_SHAPE_RUNS = 3 };  // most runs of a row

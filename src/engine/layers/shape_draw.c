@@ -190,12 +190,14 @@ static struct circle circle_at(const struct draw *d, int x, int y)
                            toward * (2 * py - l->height) * d->corner, d->shape->radius};
 }
 
-// Half the circle's width in a row of the shape, from its exact area as for a disc.
+// Half the circle's width in a row of the shape: its mean between the heights that the shape covers, as the shape's own ends
+// are. So a circle around a shape cuts nothing from it, however small both are.
 static float chord_of(const struct hf_shape *s, const struct circle *c, double wide, int row)
 {
-    const double from = hf_half_disc(c->r, s->top + row - 0.5 - c->y),
-                 to = hf_half_disc(c->r, s->top + row + 0.5 - c->y);
-    return (float)((to - from) * wide);
+    const struct hf_shape_row *r = &s->row[row];
+    const double from = hf_half_disc(c->r, s->top + row + r->top - c->y),
+                 to = hf_half_disc(c->r, s->top + row + r->low - c->y);
+    return (float)((to - from) / ((double)r->low - r->top) * wide);
 }
 
 // Cut a run by the circle; returns 0 if nothing is left.
@@ -213,12 +215,12 @@ static float sum_at(const struct draw *d, const struct circle *c, size_t node)
     const struct hf_shape *s = d->shape;
     if (d->at.sum[node] >= 0)
         return d->at.sum[node];
-    double sum = 0, from = hf_half_disc(c->r, s->top - 0.5 - c->y);
+    double sum = 0;
     for (int i = 0; i < s->rows; i++) {
-        const double to = hf_half_disc(c->r, s->top + i + 0.5 - c->y);
-        const float chord = (float)((to - from) * d->c->l->key.wide);
         float a, b;
-        from = to;
+        if (!s->row[i].count)
+            continue;
+        const float chord = chord_of(s, c, d->c->l->key.wide, i);
         if (d->at.chord)
             d->at.chord[node * (size_t)s->rows + (size_t)i] = chord;
         for (int j = s->row[i].first; j < s->row[i].first + s->row[i].count; j++)

@@ -64,7 +64,7 @@ void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wi
             first++;
         while (last > first && !(w[last - 1] > 0))
             last--;
-        row[i] = (struct hf_shape_row){i * stride + first, last - first, first - s->reach};
+        row[i] = (struct hf_shape_row){i * stride + first, last - first, first - s->reach, 0, 0};
         for (int x = first; x < last; x++)
             s->sum += w[x];
     }
@@ -72,7 +72,7 @@ void hf_shape_draw(struct hf_shape *s, const struct hf_integral *area, double wi
         return;
     // A black picture is drawn as the pixel itself.
     struct hf_shape_row *middle = &row[-s->top];
-    *middle = (struct hf_shape_row){-s->top * stride, 1, 0};
+    *middle = (struct hf_shape_row){-s->top * stride, 1, 0, 0, 0};
     weight[middle->first] = 1;
     s->sum = 1;
 }

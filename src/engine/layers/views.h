@@ -34,6 +34,8 @@ struct hf_view_eye {
     const float *x;
     float y, sharp;  // sharp: 1 / the width of the edge
     const float (*point)[2];
+    const float
+        *whole;    // for each point: half, and more beside the aperture's own rim, where only what lies within counts
     float *total;  // receives the mean over the views of what is left
 };
 
