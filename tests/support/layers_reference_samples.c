@@ -173,7 +173,7 @@ static void unmix(struct frame *f, int x, int y)
         mixed[c] = fmin(fmax(mean[1][c] + rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
     }
     // A front that is hardly there has its back's radius.
-    const double some = fmin(64 * seen[WEIGHT], 1),
+    const double some = fmin(256 * seen[WEIGHT], 1),
                  radius = whole * own + (1 - whole) * (a0 * own + (1 - a0) * mean[0][4]);
     mixed[RADIUS] = a0 * mean[1][4] + (1 - a0) * own;
     seen[RADIUS] = some * radius + (1 - some) * mixed[RADIUS];
