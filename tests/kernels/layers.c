@@ -290,8 +290,13 @@ void layers_make(struct world *w, int which)
         put_set(w, IN, 6, w->n);
         return;
     case LAYERS_NEAREST:
-        fill_surfaces(w, 0, 0, 2 * w->n);
-        fill_surfaces(w, 1, 0, 2 * w->n);
+        for (int i = 0; i < 8; i++)
+            if (i < 4)
+                fill_surfaces(w, i, 0, 2 * w->n);
+            else
+                fill(w, i, 0, 2 * w->n, WEIGHT);
+        for (int x = 0; x < 2 * w->n; x++)  // fronts that are hardly there
+            line(w, ARENA_MADE, 4)[x] *= rng_one_in(&w->rng, 3) ? 0.01f : 1;
         put(w, IN, w->n, 32);
         return;
     case LAYERS_EXTREMES:
@@ -442,7 +447,7 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         alike_call(w, k, a);
         return;
     case LAYERS_NEAREST:
-        s->nearest(in[0], in[1], w->n, out);
+        s->nearest(in, in + 4, w->n, out);
         return;
     case LAYERS_EXTREMES:
         w->result[a].returned = s->extremes(in[0], now.with ? in[8] : NULL, now.with ? line(w, a, 16) : NULL, stride(w),

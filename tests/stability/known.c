@@ -34,7 +34,6 @@ static const struct known {
     {"layers best", "lens", 10.3, &patterns},
     {"layers best", "range", 17.4, &patterns},
     {"layers views", "lens, ring", 77.3, &whole_pixels},
-    {"layers ngon", "lens", 0.994, &unexplained},
     {"layers", "lens", 0.484, &unexplained},
     {"layers squeeze", "range", 1.1, &unexplained},
     {"layers cat's eye", "range", 0.9, &unexplained},

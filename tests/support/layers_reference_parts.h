@@ -104,6 +104,8 @@ static inline double layers_reference_hides(double behind)
     return fmin(fmax(2 * (behind - 1), 0), 1);
 }
 
+// From which radius on a pixel hides: its front's, but a front that is hardly there comes nearer to its back the less it is.
+double layers_reference_hides_from(const struct frame *f, int x, int y);
 // Fill in f's samples: visible, mixed and hidden ones (layers_reference_samples.c).
 void layers_reference_samples(struct frame *f);
 // Merge samples that are about as far as the farthest of them.

@@ -242,7 +242,7 @@ void layers_reference_patterns(const struct frame *f, const struct grid *quads, 
         place[0] = at(hidden, x, y)[RADIUS];
         place[1] = INFINITY;
         for (int k = 0; k < 4 && at(hidden, x, y)[WEIGHT] > 0; k++)
-            place[1] = fmin(edge(&f->seen, 2 * x + k % 2, 2 * y + k / 2)[RADIUS], place[1]);
+            place[1] = fmin(layers_reference_hides_from(f, 2 * x + k % 2, 2 * y + k / 2), place[1]);
     }
     v[1] = halve(&v[0], channels);
     v[2] = halve(&v[1], channels);

@@ -172,11 +172,8 @@ static void unmix(struct frame *f, int x, int y)
         seen[c] = whole * v + (1 - whole) * front;
         mixed[c] = fmin(fmax(mean[1][c] + rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
     }
-    // A front that is hardly there has its back's radius.
-    const double some = fmin(256 * seen[WEIGHT], 1),
-                 radius = whole * own + (1 - whole) * (a0 * own + (1 - a0) * mean[0][4]);
+    seen[RADIUS] = whole * own + (1 - whole) * (a0 * own + (1 - a0) * mean[0][4]);
     mixed[RADIUS] = a0 * mean[1][4] + (1 - a0) * own;
-    seen[RADIUS] = some * radius + (1 - some) * mixed[RADIUS];
 }
 
 // ---- highlights ----
@@ -285,6 +282,12 @@ static void step(const struct frame *f, const struct grid *from, struct grid *to
         }
 }
 
+double layers_reference_hides_from(const struct frame *f, int x, int y)
+{
+    const double *front = edge(&f->seen, x, y), *back = edge(&f->mixed, x, y), some = 256 * front[WEIGHT];
+    return some < 1 && back[WEIGHT] > 0 ? some * front[RADIUS] + (1 - some) * back[RADIUS] : front[RADIUS];
+}
+
 // The radius that a search looks behind: the nearest visible one, or half that of a near sample that was found behind
 // it.
 static double look_from(const struct frame *f, const struct grid *found, int x, int y)
@@ -296,7 +299,7 @@ static double look_from(const struct frame *f, const struct grid *found, int x, 
                    ? fmin(1, 16 * at(found, x, y)[WEIGHT]) * (at(found, x, y)[RADIUS] / 2 + 1) - 1
                    : INFINITY;
     for (int i = 0; i < 4; i++)
-        nearest = fmin(nearest, edge(&f->seen, 2 * x + i % 2, 2 * y + i / 2)[RADIUS]);
+        nearest = fmin(nearest, layers_reference_hides_from(f, 2 * x + i % 2, 2 * y + i / 2));
     return nearest;
 }
 

@@ -174,11 +174,28 @@ void hf_layers_between_c(const struct hf_hidden_line *line, int channels, const 
     }
 }
 
-void hf_layers_nearest_c(const float *above, const float *below, int n, float *out)
+void hf_layers_quad_rows(const struct hf_frame *f, int x, int y, const float *radius[4], const float *weight[4])
+{
+    for (int i = 0; i < 4; i++) {
+        const struct hf_buf *of = &f->buf[i < 2 ? HF_LAYERS_BUF_SEEN_AT : HF_LAYERS_BUF_MIXED_AT];
+        weight[i] = hf_at(of, 0, 2 * x, 2 * y + i % 2);
+        radius[i] = hf_at(of, 1, 2 * x, 2 * y + i % 2);
+    }
+}
+
+// From which radius on a pixel in row `row` of a quad hides.
+static float hides_from(const float *const radius[4], const float *const weight[4], int row, int at)
+{
+    const float front = radius[row][at], some = weight[row][at] * HF_LAYERS_THIN;
+    return some < 1 && weight[2 + row][at] > 0 ? some * (front - radius[2 + row][at]) + radius[2 + row][at] : front;
+}
+
+void hf_layers_nearest_c(const float *const radius[4], const float *const weight[4], int n, float *out)
 {
     for (int x = 0; x < n; x++) {
-        const float left = above[2 * x] < below[2 * x] ? above[2 * x] : below[2 * x];
-        const float right = above[2 * x + 1] < below[2 * x + 1] ? above[2 * x + 1] : below[2 * x + 1];
+        const float r[4] = {hides_from(radius, weight, 0, 2 * x), hides_from(radius, weight, 1, 2 * x),
+                            hides_from(radius, weight, 0, 2 * x + 1), hides_from(radius, weight, 1, 2 * x + 1)};
+        const float left = r[0] < r[1] ? r[0] : r[1], right = r[2] < r[3] ? r[2] : r[3];
         out[x] = left < right ? left : right;
     }
 }

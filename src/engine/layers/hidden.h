@@ -96,12 +96,19 @@ struct hf_hidden_line {
 // A pixel whose back is less than 1 / EDGE of it counts partly as its front for others.
 #define HF_LAYERS_EDGE 64
 
+// A front that is less than 1 / THIN of its pixel comes nearer to its back the less it is, where the nearest surface of a
+// quad is sought. Otherwise it would decide what is found behind it until it is nothing, and then no more. At 64 and less, pictures and
+// their transposes differ by half as much again.
+#define HF_LAYERS_THIN 256
+
 // Negative samples keep their sign.
 static inline float hf_layers_root(float v)
 {
     return v > 0 ? sqrtf(v) : v < 0 ? -sqrtf(-v) : 0;
 }
 
+// The radii and weights of a row of quads from quad x on: two rows of visible samples, then the backs of mixed ones.
+void hf_layers_quad_rows(const struct hf_frame *f, int x, int y, const float *radius[4], const float *weight[4]);
 // The farthest sample of each quad of a cell: level 0.
 void hf_layers_quads_pass(const struct hf_frame *f, struct hf_rect r);
 // Floats of scratch that the pass needs for a band of half-resolution rows.

@@ -238,12 +238,25 @@ static void layers_between_simd(const struct hf_hidden_line *line, int channels,
     HF_WITH_CHANNELS(channels, layers_between_of(line, CHANNELS, nearest, n, sum));
 }
 
-static void layers_nearest_simd(const float *above, const float *below, int n, float *out)
+// hides_from() of hidden.c. Thin fronts are rare.
+HF_INLINE vf layers_hides_from(const float *const radius[4], const float *const weight[4], int row, int at)
+{
+    const vf front = vf_load(radius[row] + at), some = vf_mul(vf_load(weight[row] + at), vf_set1(HF_LAYERS_THIN));
+    vm thin = vf_lt(some, vf_set1(1));
+    if (!vm_any(thin))
+        return front;
+    thin = vm_and(thin, vf_gt(vf_load(weight[2 + row] + at), vf_zero()));
+    const vf back = vf_keep(thin, vf_load(radius[2 + row] + at));
+    return vf_select(thin, vf_fma(some, vf_sub(front, back), back), front);
+}
+
+static void layers_nearest_simd(const float *const radius[4], const float *const weight[4], int n, float *out)
 {
     for (int x = 0; x < n; x += VF_N) {
         vf least[2], even, odd;
         for (int i = 0; i < 2; i++)
-            least[i] = vf_min(vf_load(above + 2 * x + i * VF_N), vf_load(below + 2 * x + i * VF_N));
+            least[i] = vf_min(layers_hides_from(radius, weight, 0, 2 * x + i * VF_N),
+                              layers_hides_from(radius, weight, 1, 2 * x + i * VF_N));
         vf_unzip(least[0], least[1], &even, &odd);
         vf_store(out + x, vf_min(even, odd));
     }

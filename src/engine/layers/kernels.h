@@ -29,8 +29,8 @@ typedef void hf_layers_taps(const struct hf_hidden_tap *tap, int count, int chan
 struct hf_hidden_line;
 typedef void hf_layers_between(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
                                float *const sum[7]);
-// The nearest, that is the least, radius of each of n quads (2 x 2 pixels), from their two rows of radii.
-typedef void hf_layers_nearest(const float *above, const float *below, int n, float *out);
+// The nearest, that is the least, radius of each of n quads (2 x 2 pixels), from what hf_layers_quad_rows gives.
+typedef void hf_layers_nearest(const float *const radius[4], const float *const weight[4], int n, float *out);
 // Hidden samples from the sums of taps; their colours are square roots. Their weight is the part of the quad that lies
 // more than a pixel of radius before them. radius and weight: the quad's two rows of visible samples, then those behind
 // mixed edges. Where the sum of coverage is below 1, the hidden sample weighs less in proportion.
@@ -61,8 +61,8 @@ typedef int hf_layers_extremes(const float *radius, const float *weight, const f
 typedef int hf_layers_inside(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,
                              float after);
 // A slice's parts of n samples, summed with those in the rows - 1 rows below. share: the part of their weight that is
-// left out. channels: 0 for weights alone. add: add to what out holds. any[i] becomes 1 where the 16 samples from 16 i on have some. in[4] NULL: all
-// weigh 1.
+// left out. channels: 0 for weights alone. add: add to what out holds. any[i] becomes 1 where the 16 samples from 16 i on
+// have some. in[4] NULL: all weigh 1.
 typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                              int rows, int channels, int n, int add, float *const out[5], uint8_t *any);
 // Sums of pairs of 2n numbers; out may be in.

@@ -128,10 +128,11 @@ static void find_farthest(struct band *b)
 {
     const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
     const struct hf_rect r = {b->r.x0 - b->reach, b->r.y0 - b->reach, b->r.x1 + b->reach, b->r.y1 + b->reach};
-    for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++)
-        hf_layers_kernels(b->f)->nearest(hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * b->r.x0, 2 * y),
-                                         hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 2 * b->r.x0, 2 * y + 1),
-                                         b->r.x1 - b->r.x0, b->nearest + (y - b->r.y0) * b->width);
+    for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
+        const float *radius[4], *weight[4];
+        hf_layers_quad_rows(b->f, b->r.x0, y, radius, weight);
+        hf_layers_kernels(b->f)->nearest(radius, weight, b->r.x1 - b->r.x0, b->nearest + (y - b->r.y0) * b->width);
+    }
     for (int y = -b->around; y < b->rows + b->around && !hf_stopped(b->f->s->stop); y++)
         for (int x = -b->around; x < b->columns + b->around; x++) {
             const int x0 = hf_max(b->r.x0 + x * BLOCK, r.x0), x1 = hf_min(b->r.x0 + (x + 1) * BLOCK, r.x1);
@@ -358,11 +359,7 @@ static void find(const struct band *b, int x, int n, int y, int levels)
     k->taps(taps, count, channels, nearest, n, sum);
     find_between(b, nearest, behind, x, n, y, sum);
     const float *radius[4], *weight[4];
-    for (int i = 0; i < 4; i++) {
-        const struct hf_buf *of = &b->f->buf[i < 2 ? HF_LAYERS_BUF_SEEN_AT : HF_LAYERS_BUF_MIXED_AT];
-        weight[i] = hf_at(of, 0, 2 * x, 2 * y + i % 2);
-        radius[i] = hf_at(of, 1, 2 * x, 2 * y + i % 2);
-    }
+    hf_layers_quad_rows(b->f, x, y, radius, weight);
     planes_of(&b->found, channels, x, y, out);
     k->found((const float *const *)sum, radius, weight, channels, n, out);
 }

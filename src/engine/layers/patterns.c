@@ -129,7 +129,7 @@ static int begin_row(const struct band *b, int y)
 {
     const struct hf_frame *f = b->f;
     const struct level *v = &b->level[0];
-    const struct hf_buf *quads = &f->buf[HF_LAYERS_BUF_QUADS_AT], *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT];
+    const struct hf_buf *quads = &f->buf[HF_LAYERS_BUF_QUADS_AT];
     const int x0 = hf_max(b->region.x0, 0), n = hf_min(b->region.x1, f->s->half_width) - x0;
     const size_t bytes = sizeof(float) * (size_t)n;
     const ptrdiff_t at = y * v->set.stride + x0;
@@ -143,8 +143,9 @@ static int begin_row(const struct band *b, int y)
                 *radius = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, x0, y);
     for (int x = 0; x < n; x += LANES) {
         const int count = hf_min(n - x, LANES);
-        hf_layers_kernels(f)->nearest(hf_at(seen, 1, 2 * (x0 + x), 2 * y), hf_at(seen, 1, 2 * (x0 + x), 2 * y + 1),
-                                      count, nearest);
+        const float *front[4], *weight[4];
+        hf_layers_quad_rows(f, x0 + x, y, front, weight);
+        hf_layers_kernels(f)->nearest(front, weight, count, nearest);
         for (int i = 0; i < count; i++) {
             const int some = hidden[x + i] > 0;
             v->place[at + x + i] = some ? radius[x + i] : 0;

@@ -210,9 +210,8 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
     const float front = (1 - a0) * (mean[0][4] - own) + own;
     u->seen[4][x] = seen;  // at most 1, and 1 where the other is 0: slices do not read the weights of such tiles
     u->mixed[4][x] = 1 - seen;
-    const float back = a0 * (mean[1][4] - own) + own;
-    u->seen[5][x] = hf_saturate(seen * HF_UNMIX_THIN) * (whole * (own - front) + front - back) + back;
-    u->mixed[5][x] = back;
+    u->seen[5][x] = whole * (own - front) + front;
+    u->mixed[5][x] = a0 * (mean[1][4] - own) + own;
 }
 
 void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)

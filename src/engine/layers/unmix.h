@@ -30,11 +30,6 @@
 #define HF_UNMIX_PIXELS 7
 #define HF_UNMIX_RIM 0.75f
 
-// A front that is less than 1 / THIN of its pixel comes nearer to its back's radius the less it is. What lies behind a pixel
-// is searched from its front on, so otherwise a front would change that until it is nothing, and then no more. With 200 and
-// less, outlines in focus would lose more than a code to the blur behind them.
-#define HF_UNMIX_THIN 256
-
 // 1 / d^4 for 7 x 7 pixels; 0 for the middle one.
 extern const float hf_unmix_weights[7][7];
 // Complete the mean of the side with less weight (LEAN), and scale its variance down. mean: colour, radius (4). Returns

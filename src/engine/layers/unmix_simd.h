@@ -243,11 +243,8 @@ HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const in
     const vf front = vf_fma(vf_sub(one, a0), vf_sub(mean[0][4], own), own);
     vf_store(u->seen[4] + x, vf_select(mixed, seen, one));
     vf_store(u->mixed[4] + x, vf_keep(mixed, vf_sub(one, seen)));
-    const vf back = vf_fma(a0, vf_sub(mean[1][4], own), own);
-    const vf some = vf_min(vf_max(vf_mul(seen, vf_set1(HF_UNMIX_THIN)), zero), one);
-    const vf radius = vf_fma(some, vf_sub(vf_fma(whole, vf_sub(own, front), front), back), back);
-    vf_store(u->seen[5] + x, vf_select(mixed, radius, own));
-    vf_store(u->mixed[5] + x, vf_select(mixed, back, own));
+    vf_store(u->seen[5] + x, vf_select(mixed, vf_fma(whole, vf_sub(own, front), front), own));
+    vf_store(u->mixed[5] + x, vf_select(mixed, vf_fma(a0, vf_sub(mean[1][4], own), own), own));
 }
 
 HF_INLINE void layers_unmix_of(const struct hf_unmix_row *u, int n, const int channels)
