@@ -98,7 +98,7 @@ void views_make(struct world *w)
             for (int c = 0; c <= now.channels; c++)
                 fill(w, PLANE_LINES * i + 8 * y + c, -16, w->n + 16, c ? COLOUR : WEIGHT);
     for (int v = 0; v < VIEWS; v++)
-        now.eye_whole[v] = rng_float(r, 0.5f, 1);
+        now.point[v][2] = rng_float(r, 0.5f, 1);
     for (int v = 0; v < VIEWS; v++)
         for (int k = 0; k < 2; k++) {
             now.point[v][k] = rng_float(r, -1, 1);
@@ -118,8 +118,7 @@ void views_call(const struct world *w, const struct kernels *k, enum arena a)
     const struct hf_view_eye eye = {.x = line(w, a, EYE),
                                     .y = now.off,
                                     .sharp = 3,
-                                    .point = (const float(*)[2])now.point,
-                                    .whole = now.eye_whole,
+                                    .point = (const float(*)[3])now.point,
                                     .total = line(w, a, IN + 10)};
     struct hf_view_row row = {.plane = plane,
                               .planes = PLANES,

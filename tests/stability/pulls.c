@@ -103,34 +103,35 @@ static void pull_one(const struct run *r, enum pulled pull, const struct scene *
 }
 
 // What ring and cat's eye do as they begin: next to nothing.
-static void begins(const struct run *r, enum pulled pull, const struct scene *s, const char *scene)
+static void begin_all(const struct run *r, const struct scene *s, const char *scene)
 {
-    struct pulling w = {r, s, pull};
-    char what[80];
-    const char *why;
-    const double bound = step_bound(&r->subject->params, 0, &why);
-    struct picture without = at(&w, 0), with = at(&w, 1e-7);
-    snprintf(what, sizeof what, "%s: jump as it begins, codes", pulls[pull].name);
-    see_look(r, row_name(what), why, display_distance(&without, &with), bound, "%s", scene);
-    picture_free(&without);
-    picture_free(&with);
+    for (int pull = RING; pull <= CAT_EYE; pull++) {
+        struct pulling w = {r, s, (enum pulled)pull};
+        char what[80];
+        const char *why;
+        const double bound = step_bound(&r->subject->params, 0, &why);
+        if (!takes(&r->subject->params, w.pull))
+            continue;
+        struct picture without = at(&w, 0), with = at(&w, 1e-7);
+        snprintf(what, sizeof what, "%s: jump as it begins, codes", pulls[pull].name);
+        see_look(r, row_name(what), why, display_distance(&without, &with), bound, "%s", scene);
+        picture_free(&without);
+        picture_free(&with);
+    }
 }
 
 // The same where everything has one radius, from less than a pixel on: small shapes differ most.
-static void begin_all(const struct run *r, unsigned seed)
+static void begin_flat(const struct run *r)
 {
     static const float depths[] = {20.4f, 20.7f, 21, 22.5f, 24, 30, 16};
-    struct scene s = stage_make(STAGE_NOISE, seed, WIDTH, HEIGHT);
-    for (size_t k = 0; k < sizeof depths / sizeof *depths; k++)
-        for (int pull = RING; pull <= CAT_EYE; pull++) {
-            char scene[40];
-            if (!takes(&r->subject->params, (enum pulled)pull))
-                continue;
-            for (size_t i = 0; i < samples_of(&s.depth); i++)
-                s.depth.plane[0][i] = depths[k];
-            snprintf(scene, sizeof scene, "noise %u at %g", seed, depths[k]);
-            begins(r, (enum pulled)pull, &s, scene);
-        }
+    struct scene s = stage_make(STAGE_NOISE, r->seed, WIDTH, HEIGHT);
+    for (size_t k = 0; k < sizeof depths / sizeof *depths; k++) {
+        char scene[40];
+        for (size_t i = 0; i < samples_of(&s.depth); i++)
+            s.depth.plane[0][i] = depths[k];
+        snprintf(scene, sizeof scene, "noise %u at %g", r->seed, depths[k]);
+        begin_all(r, &s, scene);
+    }
     scene_free(&s);
 }
 
@@ -186,14 +187,13 @@ void pulls_cases(const struct run *r)
             struct scene s = stage_make((enum stage)k, seed, WIDTH, HEIGHT);
             snprintf(scene, sizeof scene, "%s %u", stage_name((enum stage)k), seed);
             pull_all(r, &s, scene, k == STAGE_LAMPS, r->full ? 300 : 10);
-            for (int pull = RING; pull <= CAT_EYE && k != STAGE_LAMPS; pull++)
-                if (takes(&r->subject->params, (enum pulled)pull))
-                    begins(r, (enum pulled)pull, &s, scene);
+            if (k != STAGE_LAMPS)
+                begin_all(r, &s, scene);
             if (k != STAGE_LAMPS && (r->full || k == STAGE_CARDS))
                 crossings(r, &s, scene);
             scene_free(&s);
         }
-    begin_all(r, r->seed);
+    begin_flat(r);
     struct scene s;
     const char *name;
     const int first = r->full ? 0 : (int)strlen(r->subject->name) % 3;

@@ -110,11 +110,13 @@ struct hf_layers {
     int guessed;                   // samples have 1 for a colour that is known and 0 for a guess
     struct hf_shapes lens;         // the shape of an aperture that is not a disc, to place points in
     struct hf_block views;         // points and shifts
-    float (*point[3])[2];          // of each group: where views are made from, in an aperture of radius 1, not widened
-    int16_t (*shift[3])[2];        // of each group, slice and view: from a pixel to the one that it shows
-    double lens_reach;             // the farthest point from the middle, in radii, at least 1
-    int group_used;                // the group that hf_layers_use_group() chose last
-    int known;                     // hidden samples have full resolution, as surfaces are known
+    // Of each group: where views are made from, in an aperture of radius 1, not widened; and what a cat's eye leaves of such a
+    // point (0 to 1) that lies on the second circle's rim.
+    float (*point[3])[3];
+    int16_t (*shift[3])[2];  // of each group, slice and view: from a pixel to the one that it shows
+    double lens_reach;       // the farthest point from the middle, in radii, at least 1
+    int group_used;          // the group that hf_layers_use_group() chose last
+    int known;               // hidden samples have full resolution, as surfaces are known
 
     int width, height;                // of the frame
     atomic_int *stop;                 // the setup's

@@ -191,13 +191,16 @@ static struct circle circle_at(const struct draw *d, int x, int y)
 }
 
 // Half the circle's width in a row of the shape: its mean between the heights that the shape covers, as the shape's own ends
-// are. So a circle around a shape cuts nothing from it, however small both are.
-static float chord_of(const struct hf_shape *s, const struct circle *c, double wide, int row)
+// are. So a circle around a shape cuts nothing from it, however small both are. from, to: half the circle's area up to
+// these heights.
+static float chord_of(const struct hf_shape_row *row, double from, double to, double wide)
 {
-    const struct hf_shape_row *r = &s->row[row];
-    const double from = hf_half_disc(c->r, s->top + row + r->top - c->y),
-                 to = hf_half_disc(c->r, s->top + row + r->low - c->y);
-    return (float)((to - from) / ((double)r->low - r->top) * wide);
+    return (float)((to - from) / ((double)row->low - row->top) * wide);
+}
+
+static double half_up_to(const struct circle *c, double height)
+{
+    return hf_half_disc(c->r, height - c->y);
 }
 
 // Cut a run by the circle; returns 0 if nothing is left.
@@ -215,15 +218,19 @@ static float sum_at(const struct draw *d, const struct circle *c, size_t node)
     const struct hf_shape *s = d->shape;
     if (d->at.sum[node] >= 0)
         return d->at.sum[node];
-    double sum = 0;
+    double sum = 0, to = 0, end = -HUGE_VAL;  // `to` belongs to height `end`, where the next row mostly begins
     for (int i = 0; i < s->rows; i++) {
+        const struct hf_shape_row *row = &s->row[i];
         float a, b;
-        if (!s->row[i].count)
+        if (!row->count)
             continue;
-        const float chord = chord_of(s, c, d->c->l->key.wide, i);
+        const double top = s->top + i + row->top, from = top == end ? to : half_up_to(c, top);
+        end = s->top + i + row->low;
+        to = half_up_to(c, end);
+        const float chord = chord_of(row, from, to, d->c->l->key.wide);
         if (d->at.chord)
             d->at.chord[node * (size_t)s->rows + (size_t)i] = chord;
-        for (int j = s->row[i].first; j < s->row[i].first + s->row[i].count; j++)
+        for (int j = row->first; j < row->first + row->count; j++)
             if (cut(&s->end[j], (float)c->x, chord, &a, &b))
                 sum += (double)s->end[j].weight * ((double)b - a);
     }
@@ -246,8 +253,10 @@ static int cut_row(const struct draw *d, int column, int x, int y, struct hf_sha
         run[0] = hf_shape_run_of(-0.5f, 0.5f, (float)s->sum);
         return y == d->y;
     }
-    const float chord =
-        d->at.chord ? d->at.chord[node * (size_t)s->rows + (size_t)i] : chord_of(s, &c, d->c->l->key.wide, i);
+    const double top = s->top + i + row->top, low = s->top + i + row->low;
+    const float chord = d->at.chord  ? d->at.chord[node * (size_t)s->rows + (size_t)i]
+                        : row->count ? chord_of(row, half_up_to(&c, top), half_up_to(&c, low), d->c->l->key.wide)
+                                     : 0;
     for (int j = row->first; j < row->first + row->count; j++)
         if (cut(&s->end[j], (float)c.x, chord, &a, &b))
             run[n++] = hf_shape_run_of(a, b, (float)(s->end[j].weight * (s->sum / sum)));

@@ -227,6 +227,9 @@ void hf_layers_unmix_c(const struct hf_unmix_row *u, int n)
 
 enum { AROUND = 16 };  // margin of a row of scratch, in floats
 
+// What rings of 8 rows of scratch hold, one after the other: a row of the frame has its place in each. The last has bytes.
+enum { SURE, MIDDLE, SLOPE, LIGHT, SQUARE, DONE };
+
 // A row of scratch holds whole vectors, and one more on either side.
 static ptrdiff_t stride_of(int width)
 {
@@ -242,12 +245,18 @@ static size_t done_floats(ptrdiff_t stride)
 size_t hf_layers_unmix_floats(int width)
 {
     const size_t stride = (size_t)stride_of(width);
-    return 8 * (5 * stride + done_floats((ptrdiff_t)stride)) + HF_PAD;
+    return 8 * (DONE * stride + done_floats((ptrdiff_t)stride)) + HF_PAD;
+}
+
+// The place of row y in a ring.
+static float *row_at(float *ring, ptrdiff_t stride, int which, int y)
+{
+    return ring + (8 * which + (y & 7)) * stride;
 }
 
 static uint8_t *done_at(float *ring, ptrdiff_t stride, int y)
 {
-    return (uint8_t *)(ring - AROUND + 40 * stride + (ptrdiff_t)done_floats(stride) * (y & 7));
+    return (uint8_t *)(ring - AROUND + 8 * DONE * stride + (ptrdiff_t)done_floats(stride) * (y & 7));
 }
 
 // How surely each pixel of a row is not mixed (1: not mixed), into the row's place in the ring.
@@ -255,12 +264,12 @@ static void sure_row(const struct hf_frame *f, int x, int n, int y, float *ring,
 {
     const struct hf_buf *b = &f->buf[HF_LAYERS_BUF_RADIUS];
     const float *radius[3];
-    float *sure = ring + (y & 7) * stride;
     memset(done_at(ring, stride, y), 0, done_floats(stride) * sizeof(float));
     for (int i = 0; i < 3; i++)
         radius[i] = hf_at(b, 0, x - AROUND, y + i - 1);
     // Widened to whole vectors; only three pixels on either side are read.
-    f->k->edges.sure(radius, n + 2 * AROUND, sure - AROUND, sure + 8 * stride - AROUND, sure + 16 * stride - AROUND);
+    f->k->edges.sure(radius, n + 2 * AROUND, row_at(ring, stride, SURE, y) - AROUND,
+                     row_at(ring, stride, MIDDLE, y) - AROUND, row_at(ring, stride, SLOPE, y) - AROUND);
 }
 
 // Point u at row y of the frame, from column x on, and at the rows around it.
@@ -273,15 +282,15 @@ static void place_row(const struct hf_frame *f, int x, int y, float *ring, ptrdi
         first[c] = hf_at(colour, c, x, y - 3);
     for (int i = 0; i < 7; i++) {
         u->radius[i] = first[4] + i * radius->stride;
-        u->sure[i] = ring + ((y + i - 3) & 7) * stride;
-        u->light[i] = ring + (24 + ((y + i - 3) & 7)) * stride;
-        u->square[i] = ring + (32 + ((y + i - 3) & 7)) * stride;
+        u->sure[i] = row_at(ring, stride, SURE, y + i - 3);
+        u->light[i] = row_at(ring, stride, LIGHT, y + i - 3);
+        u->square[i] = row_at(ring, stride, SQUARE, y + i - 3);
         u->done[i] = done_at(ring, stride, y + i - 3);
         for (int c = 0; c < u->channels; c++)
             u->colour[i][c] = first[c] + i * colour->stride;
     }
-    u->middle = ring + (8 + (y & 7)) * stride;
-    u->slope = ring + (16 + (y & 7)) * stride;
+    u->middle = row_at(ring, stride, MIDDLE, y);
+    u->slope = row_at(ring, stride, SLOPE, y);
     hf_row(&f->buf[HF_LAYERS_BUF_SEEN], u->channels, x, y, u->seen);
     hf_row(&f->buf[HF_LAYERS_BUF_MIXED], u->channels, x, y, u->mixed);
     for (int i = 0; i < 2; i++) {

@@ -85,9 +85,17 @@ static double place_of(const struct sums *s, double u, int *in)
     return 0;  // a black picture
 }
 
+// A point of the lens stands for what lies around it, and is half cut when the second circle's rim passes it; but nothing is
+// cut of a point beside the aperture's rim while both circles are one.
+static float left_at_rim(const float point[2], int n)
+{
+    const float inside = (1 - hypotf(point[0], point[1])) * hf_layers_view_sharp(n);
+    return 1 - hf_larger(inside < 0.5f ? inside : 0.5f, 0);
+}
+
 // Points of a shape, as dense as its light. A vertical or a horizontal edge shows how evenly points lie across it: so
 // the sums of rows and columns are exact, to half a point.
-static void place_points(const struct hf_shape *s, double wide, int n, float (*point)[2])
+static void place_points(const struct hf_shape *s, double wide, int n, float (*point)[3])
 {
     struct sums rows, columns;
     sum_rows(s, &rows);
@@ -108,6 +116,7 @@ static void place_points(const struct hf_shape *s, double wide, int n, float (*p
         for (int i = 0; i < n; i++)
             rank += was[i] < was[v] || (was[i] == was[v] && i < v);
         point[v][0] = (float)(place_of(&columns, (rank + 0.5) / n, &column) / SIZE);
+        point[v][2] = left_at_rim(point[v], n);
     }
 }
 
@@ -146,7 +155,7 @@ int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, co
         return HF_ERR_MEMORY;
     char *at = l->views.data;
     for (size_t g = 0; g < groups; g++) {
-        l->point[g] = (float(*)[2])(void *)(at + g * n * sizeof *l->point[0]);
+        l->point[g] = (float(*)[3])(void *)(at + g * n * sizeof *l->point[0]);
         l->shift[g] =
             (int16_t(*)[2])(void *)(at + groups * n * sizeof *l->point[0] + g * n * slices * sizeof *l->shift[0]);
     }

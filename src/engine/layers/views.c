@@ -316,16 +316,6 @@ static int list_planes(const struct block *b, uint32_t tiles, struct hf_view_pla
     return n;
 }
 
-// A point of the lens stands for what lies around it, and is half cut when the second circle's rim passes it; but nothing is
-// cut of a point beside the aperture's rim while both circles are one.
-static void set_whole(const struct hf_view_eye *eye, int views, float *whole)
-{
-    for (int v = 0; v < views; v++) {
-        const float inside = 1 - hypotf(eye->point[v][0], eye->point[v][1]);
-        whole[v] = 1 - hf_larger(fminf(inside * eye->sharp, 0.5f), 0);
-    }
-}
-
 // Make the views of a run of tiles.
 static void make_run(const struct block *b, int tx, int ty, int n)
 {
@@ -341,10 +331,7 @@ static void make_run(const struct block *b, int tx, int ty, int n)
     uint32_t tiles = 0;
     float eye_x[WIDTH];
     struct hf_view_eye eye = {
-        .x = eye_x, .sharp = sqrtf((float)l->set.views) / 2, .point = (const float(*)[2])l->point[l->group_used]};
-    float whole[HF_LAYERS_MOST_VIEWS];
-    set_whole(&eye, l->set.views, whole);
-    eye.whole = whole;
+        .x = eye_x, .sharp = hf_layers_view_sharp(l->set.views), .point = (const float(*)[3])l->point[l->group_used]};
     for (int i = 0; i < n; i++)
         tiles |= (uint32_t)1 << (ty * COLUMNS + tx + i);
     row.planes = list_planes(b, tiles, plane, &row.far);

@@ -6,6 +6,8 @@
 #ifndef HF_LAYERS_VIEWS_H
 #define HF_LAYERS_VIEWS_H
 
+#include <math.h>
+
 #include "engine/layers/layers.h"
 #include "pass/frame.h"
 
@@ -28,15 +30,19 @@ struct hf_view_plane {
     const int16_t (*shift)[2];  // of each view: from a pixel to the one that it shows
 };
 
+// One over the width of a circle's edge, which is about as wide as that many points of a lens lie apart.
+static inline float hf_layers_view_sharp(int views)
+{
+    return sqrtf((float)views) / 2;
+}
+
 // What a cat's eye leaves of the lens, seen from a row of pixels: of each view's point what lies within the circle of
-// radius 1 around (x[i], y). The circle's edge is as soft as points lie apart.
+// radius 1 around (x[i], y).
 struct hf_view_eye {
     const float *x;
-    float y, sharp;  // sharp: 1 / the width of the edge
-    const float (*point)[2];
-    const float
-        *whole;    // for each point: half, and more beside the aperture's own rim, where only what lies within counts
-    float *total;  // receives the mean over the views of what is left
+    float y, sharp;           // sharp: hf_layers_view_sharp
+    const float (*point)[3];  // as in struct hf_layers
+    float *total;             // receives the mean over the views of what is left
 };
 
 // Pixels (x, y) to (x + n, y) of a block, and the slices that reach them, nearest first; from `far` on they lie behind the

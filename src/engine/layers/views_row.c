@@ -9,7 +9,7 @@
 static float eye_at(const struct hf_view_eye *e, int v, int x)
 {
     const float dx = e->point[v][0] - e->x[x], dy = e->point[v][1] - e->y;
-    const float inside = 1 - sqrtf(dx * dx + dy * dy), part = inside * e->sharp + e->whole[v];
+    const float inside = 1 - sqrtf(dx * dx + dy * dy), part = inside * e->sharp + e->point[v][2];
     return part > 0 ? part < 1 ? part : 1 : 0;
 }
 

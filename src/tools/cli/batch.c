@@ -48,7 +48,7 @@ struct batch {
     struct cli_guess *guesses;     // --guessed: of each frame the view of which most was guessed
     int measuring;                 // one frame at a time, to measure its memory:
     double frame_bytes;
-    int helped;  // another process reads or writes it
+    int helped;  // another process reads or writes the frames
     struct cli_room room;
 };
 

@@ -31,8 +31,9 @@ double cli_plan_frame_bytes(const struct cli_frame *frame, double library);
 // Bytes that --memory-limit allows.
 double cli_plan_memory_limit(const struct cli_args *args);
 // How many frames are made at once: one for every two threads; one for every thread if another process reads or writes
-// them (helped: hf_io_is_helped); one or more for every thread if frames wait for the disk; fewer if memory is short. wait: the time in which a frame waits for the disk, over the time in which one
-// thread computes it. base: bytes in use for other things.
+// them; one or more for every thread if frames wait for the disk; fewer if memory is short. helped: hf_io_is_helped of the
+// frames. wait: the time in which a frame waits for the disk, over the time in which one thread computes it. base: bytes in
+// use for other things.
 int cli_plan_workers(const struct cli_args *args, int frames, int helped, double wait, double base, double frame_bytes);
 
 #endif
