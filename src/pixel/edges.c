@@ -269,7 +269,9 @@ static void take_pixel(const struct hf_edge_row *row, int x, const struct hf_sid
     for (int c = 0; c < row->channels; c++) {
         const float f = mean[0][c], b = mean[1][c], rest = v[c] - (b + a * (f - b));
         const float front = hf_edges_between(f + rest, f, v[c]), back = hf_edges_between(b + rest, b, v[c]);
-        out->colour[0][c][x] = (front + whole * (v[c] - front)) * (1 / HF_EDGES_SCALE);
+        // Between the two: where both are the largest float, a rounding error more is Inf.
+        const float both = hf_edges_between(front + whole * (v[c] - front), front, v[c]);
+        out->colour[0][c][x] = both * (1 / HF_EDGES_SCALE);
         out->colour[1][c][x] = back * (1 / HF_EDGES_SCALE);
     }
     const float front = radius[0] + a0 * (own - radius[0]);

@@ -140,7 +140,7 @@ HF_INLINE void edges_take_vector(const struct hf_edge_row *row, int x, const int
     for (int c = 0; c < channels; c++) {
         const vf f = mean[0][c], b = mean[1][c], rest = vf_sub(v[c], edges_toward(b, f, a));
         const vf front = vf_between(vf_add(f, rest), f, v[c]), back = vf_between(vf_add(b, rest), b, v[c]);
-        const vf both = vf_mul(edges_toward(front, v[c], whole), unscale);
+        const vf both = vf_mul(vf_between(edges_toward(front, v[c], whole), front, v[c]), unscale);
         vf_store(out->colour[0][c] + x, vf_select(is_mixed, both, vf_load(row->colour[2][c] + x)));
         vf_store(out->colour[1][c] + x, vf_mul(back, unscale));
     }

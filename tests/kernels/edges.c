@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Kernels of mixed pixels (pixel/edges.h). Nothing is fused, so every level has the bits of the C.
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
 #include "harness.h"
 
 // Rows of radii, sure, colours, then middle, slope, the row's own radii; and the results.
@@ -46,11 +50,14 @@ void edges_make(struct world *w, int which)
         }
         return;
     }
+    const int ends = !w->bench && rng_one_in(r, 8);  // colours that are the largest floats
     for (int x = -2; x < w->n + 2; x++) {
         for (int j = 0; j < 5; j++)
             line(w, ARENA_MADE, SURE + j)[x] = rng_one_in(r, 3) ? 1 : rng_one_in(r, 2) ? 0 : rng_float(r, 0, 1);
         for (int i = COLOUR; i < MIDDLE; i++)
-            line(w, ARENA_MADE, i)[x] = random_colour(r, w->colours);
+            line(w, ARENA_MADE, i)[x] = !ends || rng_one_in(r, 3) ? random_colour(r, w->colours)
+                                        : rng_one_in(r, 2)        ? FLT_MAX
+                                                                  : -FLT_MAX;
         line(w, ARENA_MADE, MIDDLE)[x] = rng_float(r, -20, 20);
         line(w, ARENA_MADE, SLOPE)[x] = rng_float(r, 0.02f, 2.7f);
         line(w, ARENA_MADE, OWN)[x] = rng_float(r, -40, 40);
@@ -89,4 +96,17 @@ void edges_call(struct world *w, const struct kernels *k, enum arena a, int whic
         for (int i = 0; i < 2 && channels == 3; i++)
             out.colour[i][3][x] = 0;
     }
+}
+
+int edges_check(const struct world *w, const struct level *l, char message[256])
+{
+    for (int i = 0; i < OUT; i++)
+        for (int x = 0; x < w->n; x++) {
+            const float v = line(w, ARENA_REFERENCE, IN + i)[x];
+            if (isfinite(v))
+                continue;
+            snprintf(message, 256, "result %d of pixel %d is %g", i, x, (double)v);
+            return 0;
+        }
+    return row_check(w, l, message);
 }

@@ -295,6 +295,7 @@ int scatter_check(const struct world *w, const struct level *l, char message[256
 enum { EDGES_SURE, EDGES_TAKE };
 void edges_make(struct world *w, int which);
 void edges_call(struct world *w, const struct kernels *k, enum arena a, int which);
+int edges_check(const struct world *w, const struct level *l, char message[256]);
 
 // layers.c
 enum {

@@ -116,7 +116,7 @@ const struct test tests[] = {
     ROW("up_row", SCATTER_UP, 800, scatter_make, scatter_call, scatter_check),
     ROW("behind_blend", SCATTER_BEHIND, 800, scatter_make, scatter_call, scatter_check),
     ROW("edges_sure", EDGES_SURE, 600, edges_make, edges_call, row_check),
-    ROW("edges_take", EDGES_TAKE, 600, edges_make, edges_call, row_check),
+    ROW("edges_take", EDGES_TAKE, 600, edges_make, edges_call, edges_check),
     ROW("layers_unmix", LAYERS_UNMIX, 600, layers_make, layers_call, layers_check),
     ROW("layers_roots", LAYERS_ROOTS, 600, layers_make, layers_call, layers_check),
     ROW("layers_nine", LAYERS_NINE, 600, layers_make, layers_call, layers_check),
