@@ -177,6 +177,34 @@ static void crossings(const struct run *r, const struct scene *s, const char *sc
         }
 }
 
+// Jumps that other seeds once showed.
+static void found_before(const struct run *r)
+{
+    static const struct {
+        enum pulled pull;
+        enum stage stage;
+        unsigned seed;
+        double from, to;
+    } found[] = {
+        // hexagon, 2.6 codes: a front in a mixed pixel, whose share came to nothing, had another radius from there on.
+        {RANGE_RADIUS, STAGE_LAMPS, 2, 0.9814, 0.98141},
+    };
+    for (size_t k = 0; k < sizeof found / sizeof *found; k++) {
+        struct scene s = stage_make(found[k].stage, found[k].seed, WIDTH, HEIGHT);
+        struct pulling w = {r, &s, found[k].pull};
+        const int lamps = found[k].stage == STAGE_LAMPS;
+        double from = found[k].from, to = found[k].to;
+        const char *why;
+        const double bound = step_bound(&r->subject->params, lamps, &why);
+        if (takes(&r->subject->params, w.pull)) {
+            const double left = step_left(at, lamps ? exposed_distance : display_distance, &w, HALVINGS, &from, &to);
+            see_look(r, "what jumped before, codes", why, left, bound, "%s %u, %s at %.9g", stage_name(found[k].stage),
+                     found[k].seed, pulls[w.pull].name, from);
+        }
+        scene_free(&s);
+    }
+}
+
 void pulls_cases(const struct run *r)
 {
     for (unsigned seed = r->seed; seed < r->seed + (r->full ? 10 : 1); seed++)
@@ -194,6 +222,7 @@ void pulls_cases(const struct run *r)
             scene_free(&s);
         }
     begin_flat(r);
+    found_before(r);
     struct scene s;
     const char *name;
     const int first = r->full ? 0 : (int)strlen(r->subject->name) % 3;

@@ -296,14 +296,17 @@ static struct sample sample_of(const struct picture *c, const float *r, int at, 
     if (!(e.share > 0) && front == r[at])
         return s;
     const double sharp = clamp01(2 - (front > 0 ? front : -2 * front));
-    const double share = e.share > 0 ? e.share * sharp * clamp01(back - 2 * fabs(front)) : 0;
+    // Where less than 1 / 256 of the front is seen, the pixel becomes its back.
+    const double shown = e.share > 0 ? clamp01(256 * (1 - e.share)) : 1;
+    const double share = e.share > 0 ? shown * e.share * sharp * clamp01(back - 2 * fabs(front)) : 0;
     double by_light = r[at];
     if (front > 0) {
         const double lf = (1 - e.share) * light_of(e.colour[0][0], e.colour[0][1], e.colour[0][2]);
         const double lb = e.share > 0 ? e.share * light_of(e.colour[1][0], e.colour[1][1], e.colour[1][2]) : 0;
         by_light = lf + lb > 0 ? front + (lb > 0 ? lb / (lf + lb) * (back - front) : 0) : r[at];
     }
-    const double base = by_light + sharp * (front - by_light), least = fmax(share, 1 / 32.0);
+    const double both = by_light + sharp * (front - by_light), base = shown < 1 ? back + shown * (both - back) : both;
+    const double least = fmax(share, 1 / 32.0);
     s.whole = 1 + (least - 1) * clamp01(32 * share);
     s.q = share > 1 / 32.0 ? base + (back - base) * clamp01(32 * share - 1) : base;
     for (int k = 0; k < c->channels; k++) {
