@@ -297,7 +297,7 @@ static struct sample sample_of(const struct picture *c, const float *r, int at, 
         return s;
     const double sharp = clamp01(2 - (front > 0 ? front : -2 * front));
     // Where less than 1 / 256 of the front is seen, the pixel becomes its back.
-    const double shown = e.share > 0 ? clamp01(256 * (1 - e.share)) : 1;
+    const double shown = clamp01(256 * (1 - e.share));
     const double share = e.share > 0 ? shown * e.share * sharp * clamp01(back - 2 * fabs(front)) : 0;
     double by_light = r[at];
     if (front > 0) {

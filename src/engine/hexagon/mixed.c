@@ -9,9 +9,6 @@
 // From this share on, the sample has the back's radius. No sample weighs less than half of it, because colours are
 // divided by weights.
 #define ALL (1 / 16.0f)
-// A front that shows less than this fades, and the pixel becomes its back alone: where nothing of the front is left, its
-// radius means nothing.
-#define FRONT (1 / 256.0f)
 
 static struct hf_sides sides_of(const struct hf_frame *f)
 {
@@ -53,7 +50,8 @@ static void take(const struct hf_sides *s, int channels, int x, float *const col
 {
     const float own = *radius, front = s->radius[0][x], back = s->radius[1][x];
     const float size = front > 0 ? front : 2 * -front, sharp = hf_saturate(SHARP + 1 - size);
-    const float shown = s->share[x] > 0 ? hf_saturate((1 - s->share[x]) * (1 / FRONT)) : 1;
+    // A front that shows less than noise fades, and the pixel becomes its back: the radius of no front means nothing.
+    const float shown = hf_saturate((1 - s->share[x]) * (1 / HF_EDGES_NOISE));
     const float share =
         s->share[x] > 0 ? s->share[x] * (sharp * hf_saturate(back - 2 * (front > 0 ? front : -front))) * shown : 0;
     const float t = hf_saturate(share * (2 / ALL)), u = hf_saturate(share * (2 / ALL) - 1);
