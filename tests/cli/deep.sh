@@ -5,7 +5,6 @@
 . "$(dirname "$0")/common.sh"
 
 make_inputs || { echo "skipped: no python3"; exit 77; }
-cp "$source_root/tests/cli/deep_writer.py" "$dir/"
 
 # The bar before a wall of several.sh, as samples and as two flat pictures.
 python3 - <<'PYTHON'

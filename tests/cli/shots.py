@@ -18,33 +18,20 @@ import sys
 import tempfile
 import time
 
+sys.dont_write_bytecode = True
+from exr import exr
+
 FRAMES, VERSIONS = 8, 4
 LOOK = ['--focus', '4', '--range', '2', '--engine', 'gather', '--max-radius', '4']
 ENDING = {'TERM': signal.SIGTERM, 'INT': signal.SIGINT, 'HUP': signal.SIGHUP, 'KILL': signal.SIGKILL}
 
 
-def attribute(name, kind, data):
-    return name.encode() + b'\0' + kind.encode() + b'\0' + struct.pack('<i', len(data)) + data
-
-
 def picture(version, frame, width, height):
-    """An uncompressed EXR file with R, G, B and Z."""
+    """A file with R, G, B and Z."""
     r = random.Random(1000 * version + frame)
-    window = struct.pack('<4i', 0, 0, width - 1, height - 1)
-    listed = b''.join(n + b'\0' + struct.pack('<iB3xii', 2, 0, 1, 1) for n in (b'B', b'G', b'R', b'Z')) + b'\0'
-    head = struct.pack('<ii', 20000630, 2) + attribute('channels', 'chlist', listed)
-    head += attribute('compression', 'compression', b'\0') + attribute('dataWindow', 'box2i', window)
-    head += attribute('displayWindow', 'box2i', window) + attribute('lineOrder', 'lineOrder', b'\0')
-    head += attribute('pixelAspectRatio', 'float', struct.pack('<f', 1))
-    head += attribute('screenWindowCenter', 'v2f', struct.pack('<2f', 0, 0))
-    head += attribute('screenWindowWidth', 'float', struct.pack('<f', 1)) + b'\0'
-    row = 8 + 16 * width
-    first = len(head) + 8 * height
-    parts = [head] + [struct.pack('<Q', first + row * y) for y in range(height)]
-    for y in range(height):
-        line = [r.random() for _ in range(3 * width)] + [1 + 8 * x / width for x in range(width)]
-        parts.append(struct.pack('<ii', y, row - 8) + struct.pack('<%df' % (4 * width), *line))
-    return b''.join(parts)
+    channels = dict.fromkeys('RGB', lambda x, y: r.random())
+    exr('made.exr', dict(channels, Z=lambda x, y: 1 + 8 * x / width), window=(0, 0, width - 1, height - 1))
+    return read('made.exr')
 
 
 def unstamped(data):
