@@ -52,11 +52,10 @@ void hf_layers_finish_c(const struct hf_stack_row *near, const float *const far[
         const float least = light ? faint - light[5][x] : faint, enough = least > 1e-30f ? least : 1e-30f;
         const float a = far ? far[4][x] : 0;
         const float g = far ? left / (a > enough ? a : enough) : 0;
-        const float sum = w + g * a, rest = lit < 1 ? 1 - lit : 0;
+        const float sum = w + g * a, rest = lit < 1 ? 1 - lit : 0, whole = sum > HF_LAYERS_SEEN ? sum : HF_LAYERS_SEEN;
         for (int c = 0; c < channels; c++) {
             const float top = far ? near->colour[c][x] + g * far[c][x] : near->colour[c][x];
-            // A pixel that nothing covers, with nothing filled in behind it, stays as it was.
-            float v = sum > 1e-30f ? top / sum : own[c][x];
+            float v = ((whole - sum) * own[c][x] + top) / whole;
             v = light ? rest * v + light[c][x] : v;
             if (c == 3)
                 v = fabsf(v - 1) < HF_LAYERS_OPAQUE ? 1 : v;

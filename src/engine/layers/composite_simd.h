@@ -92,10 +92,10 @@ static void layers_finish_simd(const struct hf_stack_row *near, const float *con
         const vf a = far ? vf_load(far[4] + x) : vf_zero();
         const vf g = far ? vf_div(left, vf_max(a, enough)) : vf_zero();
         const vf sum = vf_fma(g, a, w), rest = vf_max(vf_sub(one, lit), vf_zero());
+        const vf whole = vf_max(sum, vf_set1(HF_LAYERS_SEEN)), still = vf_sub(whole, sum);
         for (int c = 0; c < channels; c++) {
             const vf top = vf_load(near->colour[c] + x), was = vf_load(own[c] + x);
-            vf v = vf_div(far ? vf_fma(g, vf_load(far[c] + x), top) : top, sum);
-            v = vf_select(vf_lt(tiny, sum), v, was);
+            vf v = vf_div(vf_fma(still, was, far ? vf_fma(g, vf_load(far[c] + x), top) : top), whole);
             v = light ? vf_fma(rest, v, vf_load(light[c] + x)) : v;
             if (c == 3)
                 v = vf_select(vf_lt(vf_abs(vf_sub(v, one)), vf_set1(HF_LAYERS_OPAQUE)), one, v);

@@ -39,6 +39,9 @@ enum {
 // a sharp one would be filled with the sky far beside it. Without hidden samples only that tail lies behind them.
 #define HF_LAYERS_FAINT 0.5f
 #define HF_LAYERS_FAINT_ALONE 1e-3f
+// A pixel that nothing covers, with nothing filled in behind it, stays as it was. One that is covered by less than this does so
+// in part: a thin ring has gaps, and at their ends pixels jumped by 28 codes.
+#define HF_LAYERS_SEEN 1e-3f
 
 // Planes of samples or sums; each points to pixel (0, 0).
 struct hf_layers_set {
