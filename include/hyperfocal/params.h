@@ -290,8 +290,8 @@ struct hf_layers_params {
     // highlight.gain 1. Default 0
     int guessed;
     // Points of the lens that are followed one by one where near and far cross, so that what a near edge
-    // hides is told from what lies beside it: 2 to 192; 1: none, only slices. 0 (default): 96 with BEST, else none. More are for large radii; time
-    // grows with them.
+    // hides is told from what lies beside it: 2 to 192; 1: none, only slices, but where surfaces far in front of the focus
+    // hide each other. 0 (default): 96 with BEST, else 1. More are for large radii; time grows with them.
     int lens_points;
     uint32_t reserved[6];
 };

@@ -22,7 +22,7 @@ struct layers_case {
     struct hf_pattern_place place;
     struct hf_pattern_tap around[MOST];
     int16_t shift[PLANES][VIEWS][2];
-    float point[VIEWS][3];
+    float point[VIEWS][3], parts[VIEWS];
 };
 extern struct layers_case now;
 

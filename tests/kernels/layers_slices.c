@@ -97,8 +97,10 @@ void views_make(struct world *w)
         for (int y = 0; y < 2; y++)
             for (int c = 0; c <= now.channels; c++)
                 fill(w, PLANE_LINES * i + 8 * y + c, -16, w->n + 16, c ? COLOUR : WEIGHT);
-    for (int v = 0; v < VIEWS; v++)
+    for (int v = 0; v < VIEWS; v++) {
+        now.parts[v] = rng_float(r, 0, 2);
         now.point[v][2] = rng_float(r, 0.5f, 1);
+    }
     for (int v = 0; v < VIEWS; v++)
         for (int k = 0; k < 2; k++) {
             now.point[v][k] = rng_float(r, -1, 1);
@@ -126,6 +128,7 @@ void views_call(const struct world *w, const struct kernels *k, enum arena a)
                               .views = VIEWS,
                               .channels = now.channels,
                               .n = w->n,
+                              .part = now.add ? now.parts : NULL,
                               .eye = now.with ? &eye : NULL};
     for (int i = 0; i < PLANES; i++)
         plane[i] = (struct hf_view_plane){.at = line(w, a, PLANE_LINES * i),

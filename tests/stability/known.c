@@ -12,8 +12,6 @@ static const char *const
     *const mixed = "known: a lamp that shows in mixed pixels alone cannot be told from their front",
     *const patterns = "known: best continues patterns by choices among what is around, which no_patterns leaves out",
     *const nodes = "known: a cat's eye has its shape at nodes, counted from the left and the top",
-    *const whole_pixels =
-        "known: points of the lens are whole pixels of a slice, so they move in steps as the aperture changes",
     *const unexplained = "known: not explained so far",
     *const levels =
         "known: what begins to be seen closely outweighs 256 times, for each level, what was found farther away",
@@ -30,10 +28,8 @@ static const struct known {
     {"scatter", "transposed", 71.3, &rows_of_runs},
     {"layers picture", "transposed", 4, &draws},
     {"layers", "transposed", 78.6, &rows_of_runs},
-    {"layers best", "lens, ring", 77.3, &whole_pixels},
     {"layers best", "lens", 10.3, &patterns},
     {"layers best", "range", 17.4, &patterns},
-    {"layers views", "lens, ring", 77.3, &whole_pixels},
     {"layers", "lens", 0.484, &unexplained},
     {"layers squeeze", "range", 1.1, &unexplained},
     {"layers cat's eye", "range", 0.9, &unexplained},

@@ -45,7 +45,6 @@ void hf_layers_place_sources(struct hf_cell *c, struct hf_scratch *m)
     c->any = (uint8_t *)hf_layers_take(m, (size_t)wide / 16 / sizeof(float) + 1, 0);
     for (int i = 0; i < 6; i++)
         c->line[i] = hf_layers_take(m, (size_t)wide, 0);
-    c->shape = hf_layers_take(m, hf_layers_shape_floats(c->l, c->columns, c->rows), 0);
 }
 
 // Place what highlights take.
@@ -68,7 +67,11 @@ static size_t place(struct hf_cell *c, float *memory)
     struct hf_scratch m = {.memory = memory};
     const int width = c->columns * TILE, height = c->rows * TILE, channels = c->l->channels;
     hf_layers_place_sources(c, &m);
+    c->shape = hf_layers_take(&m, hf_layers_shape_floats(c->l, c->columns, c->rows), 0);
     place_lights(c, &m);
+    c->corners = c->columns + 3;
+    c->blend = hf_layers_take(&m, (size_t)c->corners * (size_t)(c->rows + 3), c->corners + 1);
+    c->seen_by_views = take_map(&m, c->columns, c->rows, 1);
     struct hf_tile_map *const maps[] = {&c->near, &c->far, &c->middle, &c->begun, &c->lit[0], &c->lit[1], &c->covered};
     for (int i = 0; i < 7; i++)
         *maps[i] = take_map(&m, c->columns, c->rows, 1);
@@ -92,7 +95,7 @@ static size_t place(struct hf_cell *c, float *memory)
 size_t hf_layers_cell_floats(const struct hf_layers *l, int width, int height)
 {
     struct hf_cell c = {.l = l, .columns = width / TILE, .rows = height / TILE};
-    return place(&c, NULL) + hf_layers_views_floats(l);
+    return place(&c, NULL) + hf_layers_views_floats(l, c.columns, c.rows);
 }
 
 void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples, const struct hf_layers_kernels *k,
@@ -105,7 +108,8 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
                         .y0 = r.y0,
                         .columns = (r.x1 - r.x0) / TILE,
                         .rows = (r.y1 - r.y0) / TILE};
-    float *views = memory + place(&c, memory);
+    float *rest = memory + place(&c, memory);
+    c.views = l->set.views && l->levels && hf_layers_find_views(&c);
     hf_layers_find_present(&c);
     hf_layers_mark_plain(&c);
     memset(c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
@@ -120,6 +124,8 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     while (i < l->slices && l->slice[i].level > 0 && l->slice[i].radius < 0 && !hf_stopped(l->stop))
         hf_layers_put_slice(&c, i++);
     hf_layers_draw_lights(&c, NEAR);
+    if (c.views && l->set.near_only && c.opened[NEAR])
+        hf_layers_put_views(&c, rest, out, stride);
     hf_layers_begin_middle(&c);
     for (; i < l->slices && !hf_stopped(l->stop); i++) {
         hf_layers_put_slice(&c, i);
@@ -129,6 +135,6 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     hf_layers_draw_lights(&c, FAR);
     if (!hf_stopped(l->stop))
         hf_layers_finish_cell(&c, out, stride);
-    if (l->set.views && l->levels)
-        hf_layers_put_views(&c, views, out, stride);
+    if (c.views && !l->set.near_only)
+        hf_layers_put_views(&c, rest, out, stride);
 }

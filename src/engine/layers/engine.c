@@ -65,6 +65,10 @@ static const struct hf_buf_def bufs[HF_LAYERS_BUFS] = {
     [HF_LAYERS_BUF_THIRD_AT] = {"thirdat", .frame = 1, .x = 1, .y = 1},
 };
 
+// Points of the lens from which the near stack is made where near surfaces hide each other. With 32 a soft leaf shows them, with
+// 24 clearly; 34.31, 34.32 and 34.29 dB on `foliage` (48, 32 and 24).
+enum { NEAR_VIEWS = 48 };
+
 static const struct hf_layers_settings qualities[] = {
     [HF_LAYERS_DRAFT] = {.spacing = 4, .unmix = 1, .highlights = 1, .half = 6, .quarter = 32},
     [HF_LAYERS_STANDARD] =
@@ -130,7 +134,8 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->hidden &= !given->no_hidden;
     set->highlights &= !given->no_highlights && !given->guessed;
     set->patterns &= !given->no_patterns;
-    set->views = given->lens_points > 1 ? given->lens_points : 0;
+    set->near_only = given->lens_points <= 1 && set->hidden;
+    set->views = set->near_only ? NEAR_VIEWS : given->lens_points > 1 ? given->lens_points : 0;
     set->held = !set->hidden ? 0 : set->patterns ? set->held : fminf(set->held, qualities[HF_LAYERS_STANDARD].held);
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;

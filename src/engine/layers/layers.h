@@ -91,6 +91,7 @@ struct hf_layers_settings {
     // deserve a larger one.
     float held;
     int views;  // from how many points of the lens the picture is made where near and far cross, see views.h; 0: none
+    int near_only;                // views make the near stack, where a near surface hides another, and slices the rest
     float half, quarter, eighth;  // a slice of at least this radius has this resolution
 };
 
@@ -117,6 +118,7 @@ struct hf_layers {
     // point (0 to 1) that lies on the second circle's rim.
     float (*point[3])[3];
     int16_t (*shift[3])[2];  // of each group, slice and view: from a pixel to the one that it shows
+    float *view_part;        // of each view, as in struct hf_view_row; or NULL
     double lens_reach;       // the farthest point from the middle, in radii, at least 1
     int group_used;          // the group that hf_layers_use_group() chose last
     int known;               // hidden samples have full resolution, as surfaces are known

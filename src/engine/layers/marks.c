@@ -82,24 +82,44 @@ static float largest_weight(struct tile t)
     return most;
 }
 
-static float size_of(struct hf_layers_range r)
+// The sum of a tile's weights in the near stack, fading out over the pixel of radius before it.
+static float near_weight(struct tile t, float half)
 {
-    return r.low > r.high ? 0 : hf_larger(-r.low, r.high);
+    float sum = 0;
+    for (int y = 0; y < t.rows; y++)
+        for (int x = 0; x < t.n; x++) {
+            const float w = t.weight[y * t.stride + x];
+            sum += w > 0 ? w * hf_saturate(1 - half - t.radius[y * t.stride + x]) : 0;
+        }
+    return sum;
+}
+
+// The largest radius of a range that views show.
+static float size_of(const struct hf_layers *l, struct hf_layers_range r)
+{
+    return r.low > r.high ? 0 : hf_larger(-r.low, l->set.near_only ? 0 : r.high);
 }
 
 // A tile with a hidden sample of this weight counts fully as one where surfaces cross; with less, views fade out.
 #define CROSSES 0.25f
+// In the near stack it takes a tile that is hidden as a whole: views begin where this part of it is. With less, slices are as
+// good or better: 34.26 dB on `foliage` where a quarter counts fully, 34.31 with this.
+#define COVERED 0.75f
 
 // Note how a tile's surfaces cross, for views.
-static void note_crossing(const struct hf_layers *l, struct tile hidden, struct tile beyond,
-                          const struct hf_layers_range range[2], int at)
+static void note_crossing(const struct hf_layers *l, const struct tile of[2], const struct hf_layers_range range[2],
+                          int at)
 {
     struct hf_layers_crossing *to = &l->crossing[at];
-    const float h = range[0].low > range[0].high ? 0 : largest_weight(hidden),
-                b = range[1].low > range[1].high ? 0 : largest_weight(beyond);
-    to->much = hf_saturate(hf_larger(h, b) * (1 / CROSSES));
-    to->reach = hf_larger(hf_larger(size_of(l->seen_range[at]), size_of(l->mixed_range[at])),
-                          hf_larger(size_of(range[0]), size_of(range[1])));
+    float much = 0;
+    for (int i = 0; i < 2; i++)
+        if (range[i].low < 1 - l->set.half && l->set.near_only)
+            much = hf_larger(near_weight(of[i], l->set.half) / (float)(of[i].n * of[i].rows), much);
+        else if (range[i].low <= range[i].high && !l->set.near_only)
+            much = hf_larger(largest_weight(of[i]), much);
+    to->much = hf_saturate(l->set.near_only ? (much - COVERED) / (1 - COVERED) : much / CROSSES);
+    to->reach = hf_larger(hf_larger(size_of(l, l->seen_range[at]), size_of(l, l->mixed_range[at])),
+                          hf_larger(size_of(l, range[0]), size_of(l, range[1])));
 }
 
 void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
@@ -114,10 +134,10 @@ void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
         for (int tx = r.x0 / size; tx * size < r.x1; tx++) {
             const int x = tx * size << fine, y = ty * size << fine, mark = (ty * l->columns + tx) * l->words;
             const int n = hf_min(size << fine, width - x), rows = hf_min(size << fine, height - y);
-            const struct tile h = tile_of(hidden, 0, x, y, n, rows), b = tile_of(beyond, 0, x, y, n, rows);
-            const struct hf_layers_range range[2] = {mark_tile(f, slice, h, &l->hidden_marks[mark]),
-                                                     mark_tile(f, slice, b, &l->beyond_marks[mark])};
+            const struct tile of[2] = {tile_of(hidden, 0, x, y, n, rows), tile_of(beyond, 0, x, y, n, rows)};
+            const struct hf_layers_range range[2] = {mark_tile(f, slice, of[0], &l->hidden_marks[mark]),
+                                                     mark_tile(f, slice, of[1], &l->beyond_marks[mark])};
             if (l->set.views)
-                note_crossing(l, h, b, range, ty * l->columns + tx);
+                note_crossing(l, of, range, ty * l->columns + tx);
         }
 }

@@ -49,7 +49,12 @@ struct hf_cell {
     struct hf_tile_map near, far, middle;  // tiles that a stack's slices reach, the slice in focus left out
     struct hf_tile_map begun, lit[2];      // tiles of the middle stack, and of the lights, that hold something
     int opened[2];                         // the near and the far stack hold something
-    int covering;                          // the far stack is somewhere not fully open at its start
+    int views;                             // views count somewhere
+    // How far they count at the corners of tiles, from the corner before the cell's first on; `corners` in a row.
+    float *blend;
+    int corners;
+    struct hf_tile_map seen_by_views;  // tiles of the near stack that views alone make
+    int covering;                      // the far stack is somewhere not fully open at its start
     struct hf_window source, sum[HF_LAYERS_COARSEST + 1];
     struct hf_tile_map shone;             // tiles that the blurred shares of one radius reach
     struct hf_window shine;               // their sums
@@ -127,6 +132,11 @@ int hf_layers_use_tile(struct hf_cell *c, int tx, int ty, int shine);
 // The tiles around the cell that have samples: those of the frame and one beyond it on each side, the last one included. Those
 // farther out repeat them.
 struct hf_rect hf_layers_tiles_with_samples(const struct hf_cell *c);
+// How many tiles a slice's blur reaches on each side.
+static inline int hf_layers_blur_tiles(const struct hf_slice *s)
+{
+    return (((s->reach + 3) << s->level) + TILE - 1) / TILE;
+}
 // Mark the tiles that the blur of the used tiles reaches, in the cell and one tile around it.
 int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to);
 // The next run of tiles with any of the bits, from *tx up to `end`. Moves *tx to its first tile and returns its end;
@@ -214,7 +224,12 @@ int hf_layers_is_sharp(const struct hf_cell *c, int tx, int ty);
 void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff_t stride);
 
 // views.c
-// Replace the result of a cell, out, by views where near and far cross. memory: hf_layers_views_floats() floats.
+// Find where views count in a cell. Returns 0 if they do not at all.
+int hf_layers_find_views(struct hf_cell *c);
+// Leave out what a slice of the near stack would draw in tiles that views alone make. Returns 0 if nothing is left to draw.
+int hf_layers_leave_to_views(struct hf_cell *c, const struct hf_slice *s);
+// Put views in the place of what the near stack holds, or with near_only 0 of a cell's result, out. memory:
+// hf_layers_views_floats() floats.
 void hf_layers_put_views(const struct hf_cell *c, float *memory, float *const out[4], ptrdiff_t stride);
 
 #endif

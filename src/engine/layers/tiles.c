@@ -167,7 +167,7 @@ struct hf_rect hf_layers_tiles_with_samples(const struct hf_cell *c)
 
 int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct hf_tile_map *to)
 {
-    const int reach = ((s->reach + 3) << s->level) + TILE - 1, by = reach / TILE;
+    const int by = hf_layers_blur_tiles(s);
     int any = 0;
     for (int ty = -1; ty <= c->rows; ty++)
         memset(hf_layers_map_at(to, -1, ty), 0, (size_t)c->columns + 2);

@@ -151,11 +151,13 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .share = shares ? c->samples->share : NULL,
                                    .channels = l->channels + 1,
                                    .more = &c->samples->mixed};
-        hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
         begin(c, stack);
-        put_under(c, stack, s->level, sums_of(l, s, stack));
         if (s->radius != 0)
             mark(c, &c->touched, reached);
+        if (stack != NEAR || !l->set.near_only || !c->views || hf_layers_leave_to_views(c, s)) {
+            hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
+            put_under(c, stack, s->level, sums_of(l, s, stack));
+        }
     }
     // Next to the focus, the border between visible and hidden samples must be as fine as the picture; at quads'
     // resolution a line would stay open.
@@ -169,10 +171,12 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .spread = pixels && !l->known,
                                    .channels = l->channels + 1,
                                    .more = &c->samples->beyond};
-        hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
         begin(c, stack);
-        put_under(c, stack, behind->level, HF_SUMS_HIDDEN);
         mark(c, &c->touched, reached);
+        if (stack != NEAR || !l->set.near_only || !c->views || hf_layers_leave_to_views(c, behind)) {
+            hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
+            put_under(c, stack, behind->level, HF_SUMS_HIDDEN);
+        }
     }
 }
 

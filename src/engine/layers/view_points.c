@@ -120,12 +120,61 @@ static void place_points(const struct hf_shape *s, double wide, int n, float (*p
     }
 }
 
+// The light of a shape around a point of the lens, as far as the next points.
+static double light_around(const struct hf_shape *s, double wide, int n, const float point[2])
+{
+    const double half = SIZE * sqrt(M_PI / n) / 2, x = (double)point[0] * SIZE * wide, y = (double)point[1] * SIZE;
+    double sum = 0;
+    for (int i = 0; i < s->rows; i++) {
+        const double at = s->top + i, high = fmin(at + 0.5, y + half) - fmax(at - 0.5, y - half);
+        for (int k = 0; k < s->row[i].count && high > 0; k++) {
+            const struct hf_shape_end e = part_of(s, &s->row[i], k);
+            const double across = fmin((double)e.b, x + half * wide) - fmax((double)e.a, x - half * wide);
+            sum += across > 0 ? high * across * (double)e.weight : 0;
+        }
+    }
+    return sum;
+}
+
+// The near stack is made from the same points of every aperture but a picture, and each counts by the aperture's light around it:
+// displacements are whole pixels, so points that move with the aperture's shape would let the picture jump.
+static int make_parts(struct hf_layers *l, const struct hf_shape_key *key, const struct hf_shape_size *size,
+                      const struct hf_mem *mem)
+{
+    const int n = l->set.views;
+    struct hf_shape_key disc = *key;
+    double all = 0;
+    disc.blades = 0;
+    disc.rotation = disc.roundness = disc.ring = 0;
+    int err = hf_shapes_build(&l->lens, &disc, size, NULL, mem, l->stop);
+    if (err)
+        return err;
+    for (int g = 0; g < l->groups; g++)
+        place_points(&l->lens.shape[0][0][2], l->wide, n, l->point[g]);
+    if (!key->blades && !(key->ring > 0)) {
+        l->view_part = NULL;
+        return HF_OK;
+    }
+    for (int v = 0; v < n; v++)
+        l->view_part[v] = (float)light_around(&l->lens.shape[0][0][2], l->wide, n, l->point[0][v]);
+    err = hf_shapes_build(&l->lens, key, size, NULL, mem, l->stop);
+    for (int v = 0; !err && v < n; v++)
+        all += l->view_part[v] =
+            (float)light_around(&l->lens.shape[0][0][2], l->wide, n, l->point[0][v]) / l->view_part[v];
+    for (int v = 0; !err && v < n; v++)
+        l->view_part[v] = (float)(l->view_part[v] * n / all);
+    return err;
+}
+
 static int make_points(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem)
 {
     struct hf_shape_key key = l->key;
     const struct hf_shape_size size = {.radius = SIZE};
     key.count = 1;
     key.factor = 1;
+    if (!picture)
+        return make_parts(l, &key, &size, mem);
+    l->view_part = NULL;
     const int err = hf_shapes_build(&l->lens, &key, &size, picture, mem, l->stop);
     for (int g = 0; !err && g < l->groups && !hf_stopped(l->stop); g++)
         place_points(&l->lens.shape[0][l->lens.planes == 3 ? g : 0][2], l->wide, l->set.views, l->point[g]);
@@ -151,9 +200,13 @@ static double farthest_point(const struct hf_layers *l)
 int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem)
 {
     const size_t n = (size_t)l->set.views, slices = (size_t)l->slices, groups = (size_t)l->groups;
-    if (hf_block_grow(&l->views, groups * n * (sizeof *l->point[0] + slices * sizeof *l->shift[0]), mem))
+    if (hf_block_grow(&l->views,
+                      n * sizeof *l->view_part + groups * n * (sizeof *l->point[0] + slices * sizeof *l->shift[0]),
+                      mem))
         return HF_ERR_MEMORY;
     char *at = l->views.data;
+    l->view_part = (float *)(void *)at;
+    at += n * sizeof *l->view_part;
     for (size_t g = 0; g < groups; g++) {
         l->point[g] = (float(*)[3])(void *)(at + g * n * sizeof *l->point[0]);
         l->shift[g] =
@@ -165,8 +218,8 @@ int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, co
     l->lens_reach = farthest_point(l);
     for (int g = 0; g < l->groups; g++)
         for (int i = 0; i < l->slices; i++) {
-            const double r = hf_layers_slice_radius(l, g, i);
-            for (int v = 0; v < l->set.views && fabs(r) <= 2 * (double)HF_LAYERS_VIEWS_MOST; v++) {
+            const double pixel = 1 << l->set.near_only, r = hf_layers_slice_radius(l, g, i) / pixel;
+            for (int v = 0; v < l->set.views && fabs(r) <= 2 * (double)hf_layers_view_most(l); v++) {
                 l->shift[g][i * l->set.views + v][0] = (int16_t)floor(0.5 - r * l->wide * (double)l->point[g][v][0]);
                 l->shift[g][i * l->set.views + v][1] = (int16_t)floor(0.5 - r * (double)l->point[g][v][1]);
             }

@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views of a cell, block by block: where they are needed, the planes that they read, and how they join the slices.
-#include "engine/layers/views.h"
+// Views of a cell, block by block: where they are needed, and how they join the slices.
+#include "engine/layers/view_block.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/layers/parts.h"
-
-enum {
-    COLUMNS = HF_LAYERS_VIEWS_COLUMNS,
-    ROWS = HF_LAYERS_VIEWS_ROWS,
-    WIDTH = COLUMNS * TILE,
-    HEIGHT = ROWS * TILE,
-    PIXELS = WIDTH * HEIGHT,
-    RUN = 2,    // tiles of a row that are made together
-    SPARE = 16  // floats after a row
-};
-_Static_assert(COLUMNS *ROWS <= 32, "a bit for each tile");
+enum { RUN = 32 };  // pixels of a row that are made together
 
 // At a pixel some views may meet no sample and stay open. They take the mean of what other views see behind the focus,
 // if at least this part of all views sees something there; with fewer, part of it is the mean of all that is seen.
@@ -26,85 +15,41 @@ _Static_assert(COLUMNS *ROWS <= 32, "a bit for each tile");
 // then one surface alone loses 0.06 on `foliage`.
 #define FAINT (1.0f / 16)
 
-// Planes of a slice, under construction.
-struct plane {
-    float *at;
-    ptrdiff_t row, channel;
-    int level, around;  // around: tiles on each side of the block
-    uint32_t tiles;     // a bit for each tile of the block that the slice reaches
-};
-
-struct block {
-    struct hf_cell c;  // only what hf_layers_place_sources() places
-    struct plane *plane;
-    struct hf_view_plane *list;
-    float *memory;                       // of planes
-    float blend[ROWS + 1][COLUMNS + 1];  // how far views count at the corners of the tiles
-    // Of the block's pixels: means of the views as in hf_view_row, and what a cat's eye leaves of them.
-    float *near[5], *beyond[5], *total;
-};
-
-// How far the blur of radius 1 goes.
-static double wide_of(const struct hf_layers *l)
-{
-    return l->lens_reach * (1 + fabs((double)l->chromatic));
-}
-
-// How far a slice's blur goes, in pixels.
-static double radius_of(const struct hf_layers *l, int slice)
-{
-    return fabs((double)l->slice[slice].radius) * wide_of(l);
-}
-
-// Views of large radii lie far apart, so their slices need no more than this: log2 of the pixel size.
-static int level_of(double r)
-{
-    return r < 16 ? 0 : r < 32 ? 1 : r < 64 ? 2 : 3;
-}
-
-// Set the size of a slice's planes; returns how many floats they take.
-static size_t shape_plane(const struct hf_layers *l, int slice, struct plane *p)
-{
-    const double r = radius_of(l, slice);
-    p->level = level_of(r);
-    // A displacement is rounded to a whole pixel.
-    p->around = ((int)ceil(r) + 1 + (1 << p->level) + TILE - 1) / TILE;
-    p->channel = WIDTH + 2 * p->around * TILE + SPARE;
-    p->row = p->channel * (l->channels + 1);
-    return (size_t)p->row * (size_t)((HEIGHT + 2 * p->around * TILE) >> p->level);
-}
-
-// Whether views show a slice.
-static int is_in(const struct hf_layers *l, int slice)
-{
-    return radius_of(l, slice) <= (double)HF_LAYERS_VIEWS_MOST;
-}
-
-static size_t place(struct block *b, float *memory)
+// rim: the pixels that are made around the block on each side.
+static size_t place(struct hf_view_block *b, struct hf_rect rim, float *memory)
 {
     const struct hf_layers *l = b->c.l;
     struct hf_scratch m = {.memory = memory};
+    b->unit = l->set.near_only;
+    b->tile = TILE >> b->unit;
+    b->made = (struct hf_rect){-rim.x0, -rim.y0, b->c.columns * b->tile + rim.x1, b->c.rows * b->tile + rim.y1};
+    b->stride = (b->made.x1 - b->made.x0 + RUN - 1) / RUN * RUN;
     hf_layers_place_sources(&b->c, &m);
-    b->plane = (struct plane *)(void *)hf_layers_take(&m, (size_t)l->slices * sizeof *b->plane / sizeof(float), 0);
-    b->list =
-        (struct hf_view_plane *)(void *)hf_layers_take(&m, (size_t)l->slices * sizeof *b->list / sizeof(float), 0);
+    const size_t pixels = (size_t)b->stride * (size_t)(b->made.y1 - b->made.y0);
     for (int i = 0; i < 5; i++) {
-        b->near[i] = hf_layers_take(&m, PIXELS, 0);
-        b->beyond[i] = hf_layers_take(&m, PIXELS, 0);
+        b->near[i] = hf_layers_take(&m, pixels, 0);
+        b->beyond[i] = hf_layers_take(&m, pixels, 0);
     }
-    b->total = hf_layers_take(&m, PIXELS, 0);
-    b->memory = hf_layers_take(&m, 0, 0);
-    for (int i = 0; i < l->slices; i++) {
-        struct plane p;
-        m.used += is_in(l, i) ? (shape_plane(l, i, &p) + 15) & ~(size_t)15 : 0;
-    }
+    b->total = hf_layers_take(&m, pixels, 0);
+    b->across = hf_layers_take(&m, (size_t)b->stride + 16, 16);
+    hf_layers_place_planes(b, &m);
     return m.used;
 }
 
-size_t hf_layers_views_floats(const struct hf_layers *l)
+// The tiles of a block for which views are made at once. Planes of the frame's pixels are large.
+static void size_block(const struct hf_layers *l, int columns, int rows, int *wide, int *high)
 {
-    struct block b = {.c = {.l = l, .columns = COLUMNS, .rows = ROWS}};
-    return l->set.views && l->levels ? place(&b, NULL) : 0;
+    *wide = hf_min(columns, l->set.near_only ? 20 : 8);
+    *high = hf_min(rows, l->set.near_only ? 12 : 4);
+}
+
+size_t hf_layers_views_floats(const struct hf_layers *l, int columns, int rows)
+{
+    struct hf_view_block b = {.c = {.l = l}};
+    if (!(l->set.views && l->levels))
+        return 0;
+    size_block(l, columns, rows, &b.c.columns, &b.c.rows);
+    return place(&b, (struct hf_rect){1, 1, 1, 1}, NULL);
 }
 
 // ---- where ----
@@ -116,237 +61,153 @@ static int apart(int a, int b)
 }
 
 // How far views count in a tile: fully where something is hidden whose light may come there, and not where light comes
-// from radii too large for them.
+// from radii too large for them. The near stack asks only the tiles beside it what is hidden: 34.31 dB on `foliage`, 34.41 with
+// all that reach it, for twice the time.
 static float blend_at(const struct hf_layers *l, int column, int row)
 {
-    const float most = hf_larger(-l->nearest, l->farthest) * (float)wide_of(l);
-    const int n = (int)fminf(most, 65536) / TILE + 2;
+    const int near_only = l->set.near_only;
+    const float wide = (float)hf_layers_view_width(l), large = hf_layers_view_most(l);
+    const float most = (near_only ? -l->nearest : hf_larger(-l->nearest, l->farthest)) * wide;
+    const int n = near_only && most <= 0.75f * large ? 1 : (int)fminf(most, 65536) / TILE + 2;
     float much = 0, small = 1;
     for (int y = hf_max(row - n, 0); y < hf_min(row + n + 1, l->rows); y++)
         for (int x = hf_max(column - n, 0); x < hf_min(column + n + 1, l->columns); x++) {
             const struct hf_layers_crossing *t = &l->crossing[y * l->columns + x];
-            const float away = (float)hf_max(apart(x, column), apart(y, row));
-            const float reach = t->reach * (float)wide_of(l), near = hf_saturate((reach - away) * (1.0f / TILE) + 1);
-            const float over = near * hf_saturate((reach - 0.75f * HF_LAYERS_VIEWS_MOST) * (4 / HF_LAYERS_VIEWS_MOST));
-            much = hf_larger(t->much * near, much);
+            const float away = (float)hf_max(apart(x, column), apart(y, row)), reach = t->reach * wide;
+            const float near = hf_saturate((reach - away) * (1.0f / TILE) + 1);
+            const float over = near * hf_saturate((reach - 0.75f * large) * (4 / large));
+            if (t->much > much)
+                much = hf_larger(t->much * (near_only ? away == 0 : near), much);
             small = 1 - over < small ? 1 - over : small;
         }
     return much * small;
 }
 
-// Find how far views count at the corners of tiles. Returns 0 if they do not at all.
-static int find_blend(struct block *b)
+int hf_layers_find_views(struct hf_cell *c)
 {
-    const struct hf_layers *l = b->c.l;
-    const int column = b->c.x0 / TILE, row = b->c.y0 / TILE;
-    float tile[ROWS + 2][COLUMNS + 2];
+    const struct hf_layers *l = c->l;
+    const int column = c->x0 / TILE, row = c->y0 / TILE;
     int any = 0;
-    for (int y = 0; y < ROWS + 2; y++)
-        for (int x = 0; x < COLUMNS + 2; x++)
-            tile[y][x] = blend_at(l, hf_min(hf_max(column + x - 1, 0), l->columns - 1),
-                                  hf_min(hf_max(row + y - 1, 0), l->rows - 1));
-    for (int y = 0; y <= ROWS; y++)
-        for (int x = 0; x <= COLUMNS; x++) {
-            b->blend[y][x] =
-                hf_larger(hf_larger(tile[y][x], tile[y][x + 1]), hf_larger(tile[y + 1][x], tile[y + 1][x + 1]));
-            any |= b->blend[y][x] > 0;
+    for (int i = 0; i < c->corners * (c->rows + 3); i++)
+        c->blend[i - c->corners - 1] = 0;
+    // A corner has the most of its four tiles.
+    for (int ty = -2; ty <= c->rows + 1; ty++)
+        for (int tx = -2; tx <= c->columns + 1; tx++) {
+            const float much =
+                blend_at(l, hf_min(hf_max(column + tx, 0), l->columns - 1), hf_min(hf_max(row + ty, 0), l->rows - 1));
+            any |= much > 0;
+            for (int y = hf_max(ty, -1); y <= hf_min(ty + 1, c->rows + 1); y++)
+                for (int x = hf_max(tx, -1); x <= hf_min(tx + 1, c->columns + 1); x++) {
+                    float *at = &c->blend[y * c->corners + x];
+                    *at = hf_larger(much, *at);
+                }
+        }
+    // The slices of a tile are upsampled with a pixel of the tiles around it.
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (int tx = -1; tx <= c->columns; tx++) {
+            int whole = l->set.near_only;
+            for (int y = hf_max(ty - 1, -1); y <= hf_min(ty + 2, c->rows + 1); y++)
+                for (int x = hf_max(tx - 1, -1); x <= hf_min(tx + 2, c->columns + 1); x++)
+                    whole &= c->blend[y * c->corners + x] >= 1;
+            *hf_layers_map_at(&c->seen_by_views, tx, ty) = (uint8_t)whole;
         }
     return any;
 }
 
-static int is_blended(const struct block *b, int tx, int ty)
+// Whether the slice's blur shows a tile's samples anywhere.
+static int is_shown(const struct hf_cell *c, int by, int tx, int ty)
 {
-    return b->blend[ty][tx] > 0 || b->blend[ty][tx + 1] > 0 || b->blend[ty + 1][tx] > 0 || b->blend[ty + 1][tx + 1] > 0;
+    for (int y = hf_max(ty - by, -1); y <= hf_min(ty + by, c->rows); y++)
+        for (int x = hf_max(tx - by, -1); x <= hf_min(tx + by, c->columns); x++)
+            if (*hf_layers_map_at(&c->touched, x, y))
+                return 1;
+    return 0;
 }
 
-// ---- planes ----
-
-struct taker {
-    struct plane *p;
-    int channels;
-};
-
-static void add_row(float *to, const float *in, int n, int level)
+int hf_layers_leave_to_views(struct hf_cell *c, const struct hf_slice *s)
 {
-    for (int i = 0; i < n << level; i++)
-        to[i] += in[i >> level];
-}
-
-static void take_row(void *cookie, const float *in, ptrdiff_t channel, int x, int y, int n)
-{
-    const struct taker *t = cookie;
-    struct plane *p = t->p;
-    const int size = TILE >> p->level, left = -p->around * size, right = COLUMNS * size - left,
-              high = ROWS * size + p->around * size;
-    if (y < left || y >= high)
-        return;
-    const int from = x > left ? x : left, to = x + n < right ? x + n : right;
-    if (from >= to)
-        return;
-    float *out = p->at + y * p->row + from * (1 << p->level);
-    in += from - x;
-    for (int c = 0; c < t->channels; c++)
-        add_row(out + (c + 1) * p->channel, in + c * channel, to - from, p->level);
-    add_row(out, in + t->channels * channel, to - from, p->level);
-}
-
-// A slice at the resolution that views need, of samples of pixels (finest 0) or of quads.
-static struct hf_slice slice_of(const struct hf_layers *l, const struct hf_slice *from, const struct plane *p,
-                                int finest)
-{
-    struct hf_slice s = *from;
-    s.level = p->level;
-    s.shape = NULL;
-    s.rows = s.reach = (int)ceil(fabs((double)s.radius) * wide_of(l)) >> p->level;
-    s.scale = 1 / (float)(1 << 2 * (p->level - finest));
-    return s;
-}
-
-static uint32_t touched_tiles(const struct block *b)
-{
-    uint32_t tiles = 0;
-    for (int ty = 0; ty < b->c.rows; ty++)
-        for (int tx = 0; tx < b->c.columns; tx++)
-            tiles |= (uint32_t)(*hf_layers_map_at(&b->c.touched, tx, ty) != 0) << (ty * COLUMNS + tx);
-    return tiles;
-}
-
-// Whether samples of a kind reach the block; begins the planes if they are the first.
-static int reach(struct block *b, int i, enum hf_kind kind, const struct hf_slice *s, size_t *used)
-{
-    struct plane *p = &b->plane[i];
-    if (!hf_layers_mark_used(&b->c, i, kind) || !hf_layers_mark_touched(&b->c, s, &b->c.touched))
-        return 0;
-    const uint32_t tiles = touched_tiles(b);
-    if (tiles && !p->tiles) {
-        const size_t n = shape_plane(b->c.l, i, p);
-        memset(b->memory + *used, 0, sizeof(float) * n);
-        p->at = b->memory + *used + (p->around * TILE >> p->level) * p->row + p->around * TILE;
-        *used += (n + 15) & ~(size_t)15;
-    }
-    p->tiles |= tiles;
-    return tiles != 0;
-}
-
-// Gather what a slice's planes hold: sums of samples, without their highlights.
-static void gather(struct block *b, int i, size_t *used)
-{
-    const struct hf_layers *l = b->c.l;
-    const struct hf_samples *samples = b->c.samples;
-    struct plane *p = &b->plane[i];
-    struct taker to = {.p = p, .channels = l->channels};
-    shape_plane(l, i, p);
-    const struct hf_slice seen = slice_of(l, &l->slice[i], p, 0);
-    if (reach(b, i, HF_KIND_SEEN, &seen, used)) {
-        const struct hf_build build = {.s = &seen,
-                                       .set = &samples->seen,
-                                       .weight = samples->seen.weight,
-                                       .share = l->set.highlights && l->slice[i].level > 0 ? samples->share : NULL,
-                                       .channels = l->channels + 1,
-                                       .more = &samples->mixed};
-        hf_layers_take_sources(&b->c, &build, take_row, &to);
-    }
-    const int quads = !l->known && p->level > 0;
-    const struct hf_slice behind = slice_of(l, l->known ? &l->slice[i] : &l->behind[i], p, quads);
-    if (reach(b, i, HF_KIND_HIDDEN, &behind, used)) {
-        const struct hf_build build = {.s = &behind,
-                                       .set = &samples->hidden,
-                                       .weight = samples->hidden.weight,
-                                       .finest = quads,
-                                       .spread = !quads && !l->known,
-                                       .channels = l->channels + 1,
-                                       .more = &samples->beyond};
-        hf_layers_take_sources(&b->c, &build, take_row, &to);
-    }
-}
-
-// Colours of a slice are means of its samples. Weights are divided by the number of views, so sums of theirs are means
-// and cannot overflow.
-static void divide(const struct plane *p, int channels, int views)
-{
-    const int size = TILE >> p->level, first = -p->around * size, rows = ROWS * size + 2 * p->around * size;
-    for (int y = first; y < first + rows; y++) {
-        float *w = p->at + y * p->row - p->around * TILE;
-        for (int c = 1; c <= channels; c++) {
-            float *v = p->at + y * p->row + c * p->channel - p->around * TILE;
-            for (int x = 0; x < (int)p->channel - SPARE; x++)
-                v[x] = v[x] / (w[x] > 1e-30f ? w[x] : 1e-30f);
+    const int by = hf_layers_blur_tiles(s);
+    int left = 0;
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (int tx = -1; tx <= c->columns; tx++) {
+            uint8_t *touched = hf_layers_map_at(&c->touched, tx, ty);
+            *touched &= !*hf_layers_map_at(&c->seen_by_views, tx, ty);
+            left |= *touched;
         }
-        for (int x = 0; x < (int)p->channel - SPARE; x++)
-            w[x] *= 1 / (float)views;
-    }
+    for (int ty = c->box.y0; left && ty < c->box.y1; ty++)
+        for (int tx = c->box.x0; tx < c->box.x1; tx++)
+            if (*hf_layers_map_at(&c->used, tx, ty) && !is_shown(c, by, tx, ty))
+                *hf_layers_map_at(&c->used, tx, ty) = 0;
+    return left;
 }
 
-// Make the planes of all slices that reach the block.
-static void make_planes(struct block *b)
+static int is_blended(const struct hf_view_block *b, struct hf_rect tiles)
 {
-    const struct hf_layers *l = b->c.l;
-    size_t used = 0;
-    for (int i = 0; i < l->slices && !hf_stopped(l->stop); i++) {
-        struct plane *p = &b->plane[i];
-        *p = (struct plane){0};
-        if (!is_in(l, i))
-            continue;
-        gather(b, i, &used);
-        if (p->tiles)
-            divide(p, l->channels, l->set.views);
-    }
+    for (int y = tiles.y0; y <= tiles.y1; y++)
+        for (int x = tiles.x0; x <= tiles.x1; x++)
+            if (b->blend[y * b->corners + x] > 0)
+                return 1;
+    return 0;
+}
+
+// How far views count at a pixel of a tile.
+static float blend_in(const struct hf_view_block *b, int tx, int ty, int x, int y)
+{
+    const float *top = &b->blend[ty * b->corners + tx], *low = top + b->corners;
+    const float u = ((float)x + 0.5f) / (float)b->tile, v = ((float)y + 0.5f) / (float)b->tile;
+    return (1 - v) * ((1 - u) * top[0] + u * top[1]) + v * ((1 - u) * low[0] + u * low[1]);
 }
 
 // ---- rows ----
 
-// The planes that reach a run of tiles, nearest first. Returns how many.
-static int list_planes(const struct block *b, uint32_t tiles, struct hf_view_plane *to, int *far)
+static ptrdiff_t pixel_at(const struct hf_view_block *b, int x, int y)
 {
-    const struct hf_layers *l = b->c.l;
-    int n = 0;
-    *far = 0;
-    for (int i = 0; i < l->slices; i++) {
-        const struct plane *p = &b->plane[i];
-        if (!(p->tiles & tiles))
-            continue;
-        *far += l->slice[i].radius <= 0;
-        to[n++] =
-            (struct hf_view_plane){.at = p->at,
-                                   .row = p->row,
-                                   .channel = p->channel,
-                                   .level = p->level,
-                                   .shift = (const int16_t(*)[2])l->shift[l->group_used] + (ptrdiff_t)i * l->set.views};
-    }
-    return n;
+    return (y - b->made.y0) * b->stride + x - b->made.x0;
 }
 
-// Make the views of a run of tiles.
-static void make_run(const struct block *b, int tx, int ty, int n)
+// The number of the tile that holds pixel i.
+static int tile_of(int i, int tile)
 {
-    struct hf_view_plane *plane = b->list;
+    return i < 0 ? -1 : i / tile;
+}
+
+// Where a pixel lies for a cat's eye: its distance from the middle of the frame, `size` pixels wide or high.
+static float eye_at(const struct hf_view_block *b, int first, int i, int size)
+{
     const struct hf_layers *l = b->c.l;
-    const double corner = 1 / hypot(l->width, l->height), cat = (double)l->key.cat_eye;
-    struct hf_view_row row = {.plane = plane,
+    const double at = first + (i + 0.5) * (1 << b->unit);
+    return (float)((double)l->key.cat_eye * (2 * fmin(at, size) - size) / hypot(l->width, l->height));
+}
+
+// Make the views of pixels x to x + n in rows y0 to y1.
+static void make_run(const struct hf_view_block *b, int x, int n, int y0, int y1)
+{
+    const struct hf_layers *l = b->c.l;
+    const struct hf_rect tiles = {tile_of(x, b->tile), tile_of(y0, b->tile),
+                                  tile_of(hf_min(x + n, b->made.x1) - 1, b->tile) + 1, tile_of(y1 - 1, b->tile) + 1};
+    if (!is_blended(b, tiles))
+        return;
+    struct hf_view_row row = {.plane = b->list,
                               .views = l->set.views,
                               .one = 1 / (float)l->set.views,
                               .channels = l->channels,
-                              .x = tx * TILE,
-                              .n = n * TILE};
-    uint32_t tiles = 0;
-    float eye_x[WIDTH];
-    struct hf_view_eye eye = {
-        .x = eye_x, .sharp = hf_layers_view_sharp(l->set.views), .point = (const float(*)[3])l->point[l->group_used]};
-    for (int i = 0; i < n; i++)
-        tiles |= (uint32_t)1 << (ty * COLUMNS + tx + i);
-    row.planes = list_planes(b, tiles, plane, &row.far);
-    for (int x = 0; x < WIDTH; x++)
-        eye_x[x] = (float)(cat * (2 * fmin(b->c.x0 + x + 0.5, l->width) - l->width) * corner);
-    for (int y = ty * TILE; y < (ty + 1) * TILE && !hf_stopped(l->stop); y++) {
-        const int at = y * WIDTH + tx * TILE;
+                              .part = l->view_part,
+                              .x = x,
+                              .n = n};
+    struct hf_view_eye eye = {.x = b->across,
+                              .sharp = hf_layers_view_sharp(l->set.views),
+                              .point = (const float(*)[3])l->point[l->group_used]};
+    row.planes = hf_layers_list_planes(b, tiles, b->list, &row.far);
+    for (int y = y0; y < y1 && !hf_stopped(l->stop); y++) {
+        const ptrdiff_t at = pixel_at(b, x, y);
         for (int i = 0; i < 5; i++) {
             row.near[i] = b->near[i] + at;
             row.beyond[i] = b->beyond[i] + at;
         }
         row.y = y;
-        eye.y = (float)(cat * (2 * fmin(b->c.y0 + y + 0.5, l->height) - l->height) * corner);
+        eye.y = eye_at(b, b->c.y0, y, l->height);
         eye.total = b->total + at;
-        row.eye = cat > 0 ? &eye : NULL;
+        row.eye = l->key.cat_eye > 0 ? &eye : NULL;
         b->c.k->views(&row);
     }
 }
@@ -355,7 +216,7 @@ static void make_run(const struct block *b, int tx, int ty, int n)
 
 // The weight of a pixel's views, with what they leave open filled, but for what light covers (lit). *fill: the factor for what
 // they see behind the focus. total: the weight of views that leave nothing open.
-static float weight_of(const struct block *b, int at, float total, float lit, float *fill)
+static float weight_of(const struct hf_view_block *b, ptrdiff_t at, float total, float lit, float *fill)
 {
     const float near = b->near[4][at], far = b->beyond[4][at], hole = total * (1 - lit) - near - far;
     *fill = hole > 0 ? 1 + hole / hf_larger(far, FAINT * total) : 1;
@@ -363,20 +224,17 @@ static float weight_of(const struct block *b, int at, float total, float lit, fl
 }
 
 // Put a tile's views in the place of what slices made, as far as they count.
-static void mix_tile(const struct block *b, const struct hf_cell *of, int tx, int ty, float *const out[4],
+static void mix_tile(const struct hf_view_block *b, const struct hf_cell *of, int tx, int ty, float *const out[4],
                      ptrdiff_t stride)
 {
     const struct hf_layers *l = b->c.l;
-    const float *top = &b->blend[ty][tx], *low = &b->blend[ty + 1][tx];
     for (int y = 0; y < TILE; y++) {
         float light[6][TILE];
         hf_layers_light_row(of, tx + (b->c.x0 - of->x0) / TILE, ty * TILE + y + b->c.y0 - of->y0,
                             (float *[]){light[0], light[1], light[2], light[3], light[4], light[5]});
         for (int x = 0; x < TILE; x++) {
-            const int at = (ty * TILE + y) * WIDTH + tx * TILE + x;
-            const float u = ((float)x + 0.5f) / TILE, v = ((float)y + 0.5f) / TILE;
-            const float blend = (1 - v) * ((1 - u) * top[0] + u * top[1]) + v * ((1 - u) * low[0] + u * low[1]);
-            const float total = l->key.cat_eye > 0 ? b->total[at] : 1;
+            const ptrdiff_t at = pixel_at(b, tx * TILE + x, ty * TILE + y);
+            const float blend = blend_in(b, tx, ty, x, y), total = l->key.cat_eye > 0 ? b->total[at] : 1;
             float fill;
             const float w = weight_of(b, at, total, light[4][x], &fill), rest = hf_larger(1 - light[4][x], 0);
             if (!(w > 0 && blend > 0))
@@ -392,47 +250,118 @@ static void mix_tile(const struct block *b, const struct hf_cell *of, int tx, in
     }
 }
 
-static void make_block(struct block *b, const struct hf_cell *of, float *const out[4], ptrdiff_t stride)
+// The same for the whole block.
+static void mix_block(const struct hf_view_block *b, const struct hf_cell *of, float *const out[4], ptrdiff_t stride)
 {
-    const struct hf_layers *l = b->c.l;
-    if (!find_blend(b))
-        return;
-    hf_layers_find_present(&b->c);
-    hf_layers_mark_plain(&b->c);
-    memset(b->c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)b->c.source.row * TILE);
-    make_planes(b);
-    const int left = (b->c.x0 - of->x0) / TILE, top = (b->c.y0 - of->y0) / TILE;
-    for (int ty = 0; ty < b->c.rows; ty++)
-        for (int tx = 0; tx < b->c.columns; tx += RUN) {
-            const int n = hf_min(RUN, b->c.columns - tx);
-            if (is_blended(b, tx, ty) || (n > 1 && is_blended(b, tx + 1, ty)))
-                make_run(b, tx, ty, n);
-        }
-    for (int ty = 0; ty < b->c.rows && !hf_stopped(l->stop); ty++)
+    for (int ty = 0; ty < b->c.rows && !hf_stopped(b->c.l->stop); ty++)
         for (int tx = 0; tx < b->c.columns; tx++) {
             float *to[4] = {NULL};
-            for (int i = 0; i < l->channels; i++)
+            for (int i = 0; i < b->c.l->channels; i++)
                 to[i] = out[i] + ty * TILE * stride + tx * TILE;
-            if (is_blended(b, tx, ty) && !hf_layers_is_sharp(of, tx + left, ty + top))
+            if (is_blended(b, (struct hf_rect){tx, ty, tx + 1, ty + 1}) &&
+                !hf_layers_is_sharp(of, tx + (b->c.x0 - of->x0) / TILE, ty + (b->c.y0 - of->y0) / TILE))
                 mix_tile(b, of, tx, ty, to, stride);
         }
 }
 
+// What slices left to views is not read.
+static void put(float *to, float value, float blend)
+{
+    *to = blend < 1 ? (1 - blend) * *to + blend * value : value;
+}
+
+// Put what views see in the place of what the near stack holds, as far as they count.
+static void mix_near(const struct hf_view_block *b, const struct hf_cell *of)
+{
+    const struct hf_layers *l = b->c.l;
+    for (int y = b->made.y0; y < b->made.y1; y++) {
+        const struct hf_stack_row r = hf_layers_stack_at(of, NEAR, (b->c.x0 - of->x0) / 2, (b->c.y0 - of->y0) / 2 + y);
+        const int ty = tile_of(y, b->tile);
+        for (int x = b->made.x0; x < b->made.x1; x++) {
+            const ptrdiff_t at = pixel_at(b, x, y);
+            const int tx = tile_of(x, b->tile);
+            const float blend = blend_in(b, tx, ty, x - tx * b->tile, y - ty * b->tile),
+                        total = l->key.cat_eye > 0 ? b->total[at] : 1;
+            if (!(blend > 0 && total > 0))
+                continue;
+            for (int i = 0; i < l->channels; i++)
+                put(&r.colour[i][x], b->near[i][at] / total, blend);
+            put(&r.weight[x], b->near[4][at] / total, blend);
+            put(&r.behind[x], 1, blend);
+        }
+    }
+}
+
+static int make_block(struct hf_view_block *b)
+{
+    const struct hf_layers *l = b->c.l;
+    if (!is_blended(b, (struct hf_rect){tile_of(b->made.x0, b->tile), tile_of(b->made.y0, b->tile),
+                                        tile_of(b->made.x1 - 1, b->tile) + 1, tile_of(b->made.y1 - 1, b->tile) + 1}))
+        return 0;
+    hf_layers_find_present(&b->c);
+    hf_layers_mark_plain(&b->c);
+    memset(b->c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)b->c.source.row * TILE);
+    hf_layers_make_planes(b);
+    for (int i = 0; i < b->stride; i++)
+        b->across[b->made.x0 + i] = eye_at(b, b->c.x0, b->made.x0 + i, l->width);
+    for (int y = b->made.y0, next; y < b->made.y1; y = next) {
+        next = hf_min((tile_of(y, b->tile) + 1) * b->tile, b->made.y1);
+        for (int x = b->made.x0; x < b->made.x1; x += RUN)
+            make_run(b, x, hf_min(RUN, (b->made.x1 - x + 15) & ~15), y, next);
+    }
+    return !hf_stopped(l->stop);
+}
+
+// The pixels that the near stack has around a cell (MARGIN) are made with the blocks beside them.
+static struct hf_rect rim_of(const struct hf_cell *c, const struct hf_view_block *b)
+{
+    const int x = (b->c.x0 - c->x0) / TILE, y = (b->c.y0 - c->y0) / TILE;
+    return c->l->set.near_only
+               ? (struct hf_rect){x == 0, y == 0, x + b->c.columns == c->columns, y + b->c.rows == c->rows}
+               : (struct hf_rect){0, 0, 0, 0};
+}
+
+// The tiles of a cell where views of the near stack count, there or in the pixels around the cell.
+static struct hf_rect near_tiles(const struct hf_cell *c)
+{
+    struct hf_rect r = {c->columns, c->rows, 0, 0};
+    for (int ty = -1; ty <= c->rows; ty++)
+        for (int tx = -1; tx <= c->columns; tx++) {
+            const float *top = &c->blend[ty * c->corners + tx], *low = top + c->corners;
+            if (top[0] > 0 || top[1] > 0 || low[0] > 0 || low[1] > 0) {
+                const int x = hf_layers_within(tx, 0, c->columns - 1), y = hf_layers_within(ty, 0, c->rows - 1);
+                r = (struct hf_rect){hf_min(r.x0, x), hf_min(r.y0, y), hf_max(r.x1, x + 1), hf_max(r.y1, y + 1)};
+            }
+        }
+    return r;
+}
+
 void hf_layers_put_views(const struct hf_cell *c, float *memory, float *const out[4], ptrdiff_t stride)
 {
-    for (int ty = 0; ty < c->rows; ty += ROWS)
-        for (int tx = 0; tx < c->columns && !hf_stopped(c->l->stop); tx += COLUMNS) {
-            struct block b = {.c = {.l = c->l,
-                                    .samples = c->samples,
-                                    .k = c->k,
-                                    .x0 = c->x0 + tx * TILE,
-                                    .y0 = c->y0 + ty * TILE,
-                                    .columns = hf_min(COLUMNS, c->columns - tx),
-                                    .rows = hf_min(ROWS, c->rows - ty)}};
+    const struct hf_layers *l = c->l;
+    int wide, high;
+    size_block(l, c->columns, c->rows, &wide, &high);
+    const struct hf_rect r = l->set.near_only ? near_tiles(c) : (struct hf_rect){0, 0, c->columns, c->rows};
+    for (int ty = r.y0; ty < r.y1; ty += high)
+        for (int tx = r.x0; tx < r.x1 && !hf_stopped(l->stop); tx += wide) {
+            struct hf_view_block b = {.c = {.l = l,
+                                            .samples = c->samples,
+                                            .k = c->k,
+                                            .x0 = c->x0 + tx * TILE,
+                                            .y0 = c->y0 + ty * TILE,
+                                            .columns = hf_min(wide, r.x1 - tx),
+                                            .rows = hf_min(high, r.y1 - ty)},
+                                      .blend = c->blend + ty * c->corners + tx,
+                                      .corners = c->corners};
+            place(&b, rim_of(c, &b), memory);
+            if (!make_block(&b))
+                continue;
             float *to[4] = {NULL};
-            for (int i = 0; i < c->l->channels; i++)
+            for (int i = 0; !l->set.near_only && i < l->channels; i++)
                 to[i] = out[i] + ty * TILE * stride + tx * TILE;
-            place(&b, memory);
-            make_block(&b, c, to, stride);
+            if (l->set.near_only)
+                mix_near(&b, c);
+            else
+                mix_block(&b, c, to, stride);
         }
 }

@@ -2,7 +2,7 @@
 // Views: the picture from single points of the lens. Slices know how much of the lens a near surface covers, but not
 // which part. From one point of the lens each slice is only displaced, by its radius times the point, so what hides
 // what is exact. The mean over many points is the lens. Views are made where near and far cross, which is where samples
-// are hidden; elsewhere slices show the same.
+// are hidden; elsewhere slices show the same. Or they make the near stack alone, which is cheaper (near_only).
 #ifndef HF_LAYERS_VIEWS_H
 #define HF_LAYERS_VIEWS_H
 
@@ -12,14 +12,21 @@
 #include "pass/frame.h"
 
 enum {
-    HF_LAYERS_VIEWS_COLUMNS = 8,  // tiles of a block, for which views are made at once
-    HF_LAYERS_VIEWS_ROWS = 4,
     HF_LAYERS_VIEWS_SUM = 16,  // views that are summed up before they are added to the others: so rounding stays small
     HF_LAYERS_MOST_VIEWS = 192
 };
 
-// Views would lie too far apart for larger radii, and their planes would be large.
-#define HF_LAYERS_VIEWS_MOST 128.0f
+// Larger radii are not shown: views would lie too far apart, and their planes would be large.
+static inline float hf_layers_view_most(const struct hf_layers *l)
+{
+    return 128 * sqrtf(fminf((float)l->set.views / 96, 1));
+}
+
+// How far the blur of radius 1 goes.
+static inline double hf_layers_view_width(const struct hf_layers *l)
+{
+    return l->lens_reach * (1 + fabs((double)l->chromatic));
+}
 
 // A slice as views read it: planes of what it holds. x has full resolution, y that of `level`.
 struct hf_view_plane {
@@ -52,13 +59,14 @@ struct hf_view_row {
     const struct hf_view_plane *plane;
     int planes, far, views, channels, x, y, n;
     float one;                      // 1 / views
+    const float *part;              // of each view's point: the aperture's light around it, mean 1; or NULL, all 1
     const struct hf_view_eye *eye;  // or NULL
     float *near[5], *beyond[5];
 };
 
 // Make the points of the lens, and where slices lie seen from them. May return HF_ERR_MEMORY or HF_ERR_CANCELLED.
 int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, const struct hf_mem *mem);
-// Floats of scratch that a block takes.
-size_t hf_layers_views_floats(const struct hf_layers *l);
+// Floats of scratch that views take in a cell of so many tiles.
+size_t hf_layers_views_floats(const struct hf_layers *l, int columns, int rows);
 
 #endif

@@ -35,7 +35,8 @@ void hf_layers_views_c(const struct hf_view_row *r)
         for (int begin = 0; begin < r->views; begin += HF_LAYERS_VIEWS_SUM) {
             float near_part[5] = {0}, far_part[5] = {0};
             for (int v = begin; v < begin + HF_LAYERS_VIEWS_SUM && v < r->views; v++) {
-                const float part = r->eye ? eye_at(r->eye, v, x) : 1, own = part * r->one;
+                const float of = r->part ? r->part[v] : 1, part = r->eye ? of * eye_at(r->eye, v, x) : of,
+                            own = part * r->one;
                 const float open = look(r, v, x, 0, r->far, part, own, near_part);
                 look(r, v, x, r->far, r->planes, part, open, far_part);
                 total = total + own;

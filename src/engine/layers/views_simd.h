@@ -14,14 +14,23 @@ HF_INLINE vf layers_eye(const struct hf_view_eye *e, int v, int x)
 
 // What a row of pixels sees of planes `from` to `end` in one view. `side` vectors side by side hide each other's latency:
 // each slice waits for what the one before it leaves open.
-HF_INLINE void layers_look(const struct hf_view_row *r, const int channels, const int side, const int eye, int v,
+HF_INLINE void layers_look(const struct hf_view_row *r, const int channels, const int side, const int partial, int v,
                            int at, int from, int end, const vf part[2], vf open[2], vf sum[5][2])
 {
     for (int i = from; i < end; i++) {
         const struct hf_view_plane *p = &r->plane[i];
         const float *in = p->at + ((r->y + p->shift[v][1]) >> p->level) * p->row + r->x + at + p->shift[v][0];
+        vf weight[2];
+        vf most = vf_zero();
+        for (int j = 0; j < side; j++) {
+            weight[j] = vf_load(in + j * VF_N);
+            most = vf_max(most, weight[j]);
+        }
+        // Most of a slice's plane is 0.
+        if (!vm_any(vf_gt(most, vf_zero())))
+            continue;
         for (int j = 0; j < side; j++, in += VF_N) {
-            const vf w = eye ? vf_mul(vf_load(in), part[j]) : vf_load(in);
+            const vf w = partial ? vf_mul(weight[j], part[j]) : weight[j];
             const vf a = vf_min(w, open[j]);
             open[j] = vf_sub(open[j], a);
             for (int c = 0; c < channels; c++)
@@ -34,7 +43,8 @@ HF_INLINE void layers_look(const struct hf_view_row *r, const int channels, cons
     }
 }
 
-HF_INLINE void layers_views_of(const struct hf_view_row *r, const int channels, const int side, const int eye, int at)
+HF_INLINE void layers_views_of(const struct hf_view_row *r, const int channels, const int side, const int partial,
+                               int at)
 {
     vf near[5][2], far[5][2], total[2];
     for (int j = 0; j < side; j++) {
@@ -50,12 +60,14 @@ HF_INLINE void layers_views_of(const struct hf_view_row *r, const int channels, 
         for (int v = begin; v < begin + HF_LAYERS_VIEWS_SUM && v < r->views; v++) {
             vf open[2], part[2];
             for (int j = 0; j < side; j++) {
-                part[j] = eye ? layers_eye(r->eye, v, r->x + at + j * VF_N) : vf_set1(1);
-                open[j] = eye ? vf_mul(part[j], vf_set1(r->one)) : vf_set1(r->one);
-                total[j] = eye ? vf_add(total[j], open[j]) : total[j];
+                part[j] = vf_set1(partial && r->part ? r->part[v] : 1);
+                if (partial && r->eye)
+                    part[j] = vf_mul(part[j], layers_eye(r->eye, v, r->x + at + j * VF_N));
+                open[j] = partial ? vf_mul(part[j], vf_set1(r->one)) : vf_set1(r->one);
+                total[j] = partial ? vf_add(total[j], open[j]) : total[j];
             }
-            layers_look(r, channels, side, eye, v, at, 0, r->far, part, open, near_part);
-            layers_look(r, channels, side, eye, v, at, r->far, r->planes, part, open, far_part);
+            layers_look(r, channels, side, partial, v, at, 0, r->far, part, open, near_part);
+            layers_look(r, channels, side, partial, v, at, r->far, r->planes, part, open, far_part);
         }
         for (int j = 0; j < side; j++)
             for (int c = 0; c < 5; c++) {
@@ -69,23 +81,23 @@ HF_INLINE void layers_views_of(const struct hf_view_row *r, const int channels, 
                 vf_store(r->near[c] + at + j * VF_N, near[c][j]);
                 vf_store(r->beyond[c] + at + j * VF_N, far[c][j]);
             }
-        if (eye)
+        if (r->eye)
             vf_store(r->eye->total + at + j * VF_N, total[j]);
     }
 }
 
-HF_INLINE void layers_views_row(const struct hf_view_row *r, const int channels, const int eye)
+HF_INLINE void layers_views_row(const struct hf_view_row *r, const int channels, const int partial)
 {
     int x = 0;
     for (; x + 2 * VF_N <= r->n; x += 2 * VF_N)
-        layers_views_of(r, channels, 2, eye, x);
+        layers_views_of(r, channels, 2, partial, x);
     for (; x < r->n; x += VF_N)
-        layers_views_of(r, channels, 1, eye, x);
+        layers_views_of(r, channels, 1, partial, x);
 }
 
 static void layers_views_simd(const struct hf_view_row *r)
 {
-    if (r->eye)
+    if (r->eye || r->part)
         HF_WITH_CHANNELS(r->channels, layers_views_row(r, CHANNELS, 1));
     else
         HF_WITH_CHANNELS(r->channels, layers_views_row(r, CHANNELS, 0));

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the files that make views share: the tiles for which views are made at once, and the planes that they read.
+#ifndef HF_LAYERS_VIEW_BLOCK_H
+#define HF_LAYERS_VIEW_BLOCK_H
+
+#include "engine/layers/parts.h"
+#include "engine/layers/views.h"
+
+// Planes of a slice, under construction.
+struct hf_slice_plane {
+    float *at;
+    ptrdiff_t row, channel;
+    int level, around;  // around: tiles on each side of the block
+    int any;            // the slice reaches the block
+    uint64_t *reached;  // of each row of tiles, from one before the block on: a bit for each tile, likewise
+};
+
+struct hf_view_block {
+    struct hf_cell c;  // only what hf_layers_place_sources() places
+    // Pixels of the result have the frame's size, or that of the near stack: log2 of it; `tile` of them are a tile's side.
+    int unit, tile;
+    struct hf_rect made;  // the pixels that are made
+    struct hf_slice_plane *plane;
+    struct hf_view_plane *list;
+    float *memory;       // of planes
+    const float *blend;  // as in struct hf_cell, from the block's first corner on
+    int corners;
+    // Means of the views as in hf_view_row, and what a cat's eye leaves of them. The first is pixel (made.x0, made.y0).
+    float *near[5], *beyond[5], *total;
+    ptrdiff_t stride;
+    float *across;  // where the pixels of a row lie for a cat's eye, from pixel 0 on
+};
+
+// view_planes.c
+// Place planes of all slices that views show.
+void hf_layers_place_planes(struct hf_view_block *b, struct hf_scratch *m);
+// Make the planes of all slices that reach the block.
+void hf_layers_make_planes(struct hf_view_block *b);
+// The planes that reach some tiles, nearest first. Returns how many; *far: of those before the focus.
+int hf_layers_list_planes(const struct hf_view_block *b, struct hf_rect tiles, struct hf_view_plane *to, int *far);
+
+#endif

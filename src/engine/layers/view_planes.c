@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The planes that views read: what each slice holds, as colours and weights.
+#include <math.h>
+#include <string.h>
+
+#include "engine/layers/view_block.h"
+
+enum { SPARE = 32 };  // floats after a row, which runs of pixels may pass
+
+// How far a slice's blur goes, in pixels.
+static double radius_of(const struct hf_layers *l, int slice)
+{
+    return fabs((double)l->slice[slice].radius) * hf_layers_view_width(l);
+}
+
+// log2 of the pixel size of a slice's planes. A point of the lens stands for what lies around it, so a slice of the near stack
+// needs no finer pixels than its views are apart. Then few points do: with 24 of them on `foliage` 34.27 dB, and 34.11 with planes
+// as fine as the picture. Over the whole picture, beside lamps, that would let it jump.
+static int level_of(const struct hf_view_block *b, double radius)
+{
+    const double apart = radius * sqrt(M_PI / b->c.l->set.views);
+    const double size = b->c.l->set.near_only ? apart : radius / 8;
+    return hf_max(size < 2 ? 0 : size < 4 ? 1 : size < 8 ? 2 : 3, b->unit);
+}
+
+// Set the size of a slice's planes; returns how many floats they take.
+static size_t shape_plane(const struct hf_view_block *b, int slice, struct hf_slice_plane *p)
+{
+    const double r = radius_of(b->c.l, slice);
+    p->level = level_of(b, r);
+    // A displacement is rounded to a whole pixel, and one pixel around the block may be made.
+    p->around = ((int)ceil(r) + 1 + 2 * b->unit + (1 << p->level) + TILE - 1) / TILE;
+    p->channel = (b->c.columns + 2 * p->around) * b->tile + SPARE;
+    p->row = p->channel * (b->c.l->channels + 1);
+    return (size_t)p->row * (size_t)((b->c.rows + 2 * p->around) * TILE >> p->level);
+}
+
+// Whether views show a slice.
+static int is_in(const struct hf_layers *l, int slice)
+{
+    return radius_of(l, slice) <= (double)hf_layers_view_most(l) &&
+           (!l->set.near_only || (l->slice[slice].level > 0 && l->slice[slice].radius < 0));
+}
+
+void hf_layers_place_planes(struct hf_view_block *b, struct hf_scratch *m)
+{
+    const struct hf_layers *l = b->c.l;
+    const size_t slices = (size_t)l->slices;
+    b->plane = (struct hf_slice_plane *)(void *)hf_layers_take(m, slices * sizeof *b->plane / sizeof(float), 0);
+    b->list = (struct hf_view_plane *)(void *)hf_layers_take(m, slices * sizeof *b->list / sizeof(float), 0);
+    uint64_t *reached = (uint64_t *)(void *)hf_layers_take(m, 2 * slices * (size_t)(b->c.rows + 2), 0);
+    for (int i = 0; m->memory && i < l->slices; i++)
+        b->plane[i] = (struct hf_slice_plane){.reached = reached + i * (b->c.rows + 2)};
+    b->memory = hf_layers_take(m, 0, 0);
+    for (int i = 0; i < l->slices; i++) {
+        struct hf_slice_plane p;
+        m->used += is_in(l, i) ? (shape_plane(b, i, &p) + 15) & ~(size_t)15 : 0;
+    }
+}
+
+struct taker {
+    struct hf_slice_plane *p;
+    const struct hf_view_block *b;
+};
+
+static void add_row(float *to, const float *in, int n, int level)
+{
+    for (int i = 0; i < n << level; i++)
+        to[i] += in[i >> level];
+}
+
+static void take_row(void *cookie, const float *in, ptrdiff_t channel, int x, int y, int n)
+{
+    const struct taker *t = cookie;
+    struct hf_slice_plane *p = t->p;
+    const int size = TILE >> p->level, left = -p->around * size, right = t->b->c.columns * size - left,
+              high = t->b->c.rows * size + p->around * size, level = p->level - t->b->unit,
+              channels = t->b->c.l->channels;
+    if (y < left || y >= high)
+        return;
+    const int from = x > left ? x : left, to = x + n < right ? x + n : right;
+    if (from >= to)
+        return;
+    float *out = p->at + y * p->row + from * (1 << level);
+    in += from - x;
+    for (int c = 0; c < channels; c++)
+        add_row(out + (c + 1) * p->channel, in + c * channel, to - from, level);
+    add_row(out, in + channels * channel, to - from, level);
+}
+
+// A slice at the resolution that views need, of samples of pixels (finest 0) or of quads.
+static struct hf_slice slice_of(const struct hf_layers *l, const struct hf_slice *from, const struct hf_slice_plane *p,
+                                int finest)
+{
+    struct hf_slice s = *from;
+    s.level = p->level;
+    s.shape = NULL;
+    s.rows = s.reach = (int)ceil(fabs((double)s.radius) * hf_layers_view_width(l)) >> p->level;
+    s.scale = 1 / (float)(1 << 2 * (p->level - finest));
+    return s;
+}
+
+// Note which tiles are touched. Returns 0 if there are none.
+static int reached(const struct hf_view_block *b, struct hf_slice_plane *p)
+{
+    uint64_t any = 0;
+    for (int ty = -1; ty <= b->c.rows; ty++) {
+        uint64_t row = 0;
+        for (int tx = -1; tx <= b->c.columns; tx++)
+            row |= (uint64_t)(*hf_layers_map_at(&b->c.touched, tx, ty) != 0) << (tx + 1);
+        p->reached[ty + 1] |= row;
+        any |= row;
+    }
+    return any != 0;
+}
+
+// Whether samples of a kind reach the block; begins the planes if they are the first.
+static int reach(struct hf_view_block *b, int i, enum hf_kind kind, const struct hf_slice *s, size_t *used)
+{
+    struct hf_slice_plane *p = &b->plane[i];
+    if (!hf_layers_mark_used(&b->c, i, kind) || !hf_layers_mark_touched(&b->c, s, &b->c.touched) || !reached(b, p))
+        return 0;
+    if (!p->any) {
+        const size_t n = shape_plane(b, i, p);
+        memset(b->memory + *used, 0, sizeof(float) * n);
+        p->at = b->memory + *used + (p->around * TILE >> p->level) * p->row + p->around * b->tile;
+        *used += (n + 15) & ~(size_t)15;
+    }
+    return p->any = 1;
+}
+
+// Gather what a slice's planes hold: sums of samples, without their highlights.
+static void gather(struct hf_view_block *b, int i, size_t *used)
+{
+    const struct hf_layers *l = b->c.l;
+    const struct hf_samples *samples = b->c.samples;
+    struct hf_slice_plane *p = &b->plane[i];
+    struct taker to = {.p = p, .b = b};
+    shape_plane(b, i, p);
+    const struct hf_slice seen = slice_of(l, &l->slice[i], p, 0);
+    if (reach(b, i, HF_KIND_SEEN, &seen, used)) {
+        const struct hf_build build = {.s = &seen,
+                                       .set = &samples->seen,
+                                       .weight = samples->seen.weight,
+                                       .share = l->set.highlights && l->slice[i].level > 0 ? samples->share : NULL,
+                                       .channels = l->channels + 1,
+                                       .more = &samples->mixed};
+        hf_layers_take_sources(&b->c, &build, take_row, &to);
+    }
+    const int quads = !l->known && p->level > 0;
+    const struct hf_slice behind = slice_of(l, l->known ? &l->slice[i] : &l->behind[i], p, quads);
+    if (reach(b, i, HF_KIND_HIDDEN, &behind, used)) {
+        const struct hf_build build = {.s = &behind,
+                                       .set = &samples->hidden,
+                                       .weight = samples->hidden.weight,
+                                       .finest = quads,
+                                       .spread = !quads && !l->known,
+                                       .channels = l->channels + 1,
+                                       .more = &samples->beyond};
+        hf_layers_take_sources(&b->c, &build, take_row, &to);
+    }
+}
+
+// Colours of a slice are means of its samples. Weights are divided by the number of views, so sums of theirs are means
+// and cannot overflow.
+static void divide(const struct hf_view_block *b, const struct hf_slice_plane *p)
+{
+    const int size = TILE >> p->level, first = -p->around * size, rows = (b->c.rows + 2 * p->around) * size,
+              n = (b->c.columns + 2 * p->around) * b->tile;
+    for (int y = first; y < first + rows; y++) {
+        float *w = p->at + y * p->row - p->around * b->tile;
+        for (int c = 1; c <= b->c.l->channels; c++) {
+            float *v = w + c * p->channel;
+            for (int x = 0; x < n; x++)
+                v[x] = v[x] / (w[x] > 1e-30f ? w[x] : 1e-30f);
+        }
+        for (int x = 0; x < n; x++)
+            w[x] *= 1 / (float)b->c.l->set.views;
+    }
+}
+
+void hf_layers_make_planes(struct hf_view_block *b)
+{
+    const struct hf_layers *l = b->c.l;
+    size_t used = 0;
+    for (int i = 0; i < l->slices && !hf_stopped(l->stop); i++) {
+        struct hf_slice_plane *p = &b->plane[i];
+        p->any = 0;
+        memset(p->reached, 0, sizeof *p->reached * (size_t)(b->c.rows + 2));
+        if (!is_in(l, i))
+            continue;
+        gather(b, i, &used);
+        if (p->any)
+            divide(b, p);
+    }
+}
+
+// Whether a slice reaches any of some tiles.
+static int is_reached(const struct hf_slice_plane *p, struct hf_rect tiles)
+{
+    const uint64_t columns = ((uint64_t)1 << (tiles.x1 - tiles.x0)) - 1;
+    uint64_t any = 0;
+    for (int ty = tiles.y0; ty < tiles.y1; ty++)
+        any |= p->reached[ty + 1] >> (tiles.x0 + 1) & columns;
+    return any != 0;
+}
+
+int hf_layers_list_planes(const struct hf_view_block *b, struct hf_rect tiles, struct hf_view_plane *to, int *far)
+{
+    const struct hf_layers *l = b->c.l;
+    int n = 0;
+    *far = 0;
+    for (int i = 0; i < l->slices; i++) {
+        const struct hf_slice_plane *p = &b->plane[i];
+        if (!p->any || !is_reached(p, tiles))
+            continue;
+        *far += l->slice[i].radius <= 0;
+        to[n++] =
+            (struct hf_view_plane){.at = p->at,
+                                   .row = p->row,
+                                   .channel = p->channel,
+                                   .level = p->level - b->unit,
+                                   .shift = (const int16_t(*)[2])l->shift[l->group_used] + (ptrdiff_t)i * l->set.views};
+    }
+    return n;
+}
