@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Memory in proportion to what a picture can show: small pictures at the largest radius, with every kind of aperture.
 #include <stdlib.h>
+#include <string.h>
 
 #include "support/check.h"
 #include "support/render.h"
 #include "tools/common/report.h"
 
-// The bytes that the context holds, counted by its own allocator.
+// The bytes that the context holds, counted by its own allocator, and the blocks that were written past their end.
 struct held {
-    size_t now, largest;
+    size_t now, largest, passed;
 };
 
-enum { HEAD = 64 };  // bytes before a block, which hold its size
+enum { HEAD = 64, TAIL = 64, MARK = 0xa5 };  // bytes before a block, which hold its size, and after it
 
 static void *take(void *cookie, size_t size, size_t align)
 {
     struct held *h = cookie;
     void *p = NULL;
-    if (posix_memalign(&p, align < HEAD ? HEAD : align, size + HEAD))
+    if (posix_memalign(&p, align < HEAD ? HEAD : align, size + HEAD + TAIL))
         return NULL;
     *(size_t *)p = size;
+    memset((char *)p + HEAD + size, MARK, TAIL);
     h->now += size;
     h->largest = size > h->largest ? size : h->largest;
     return (char *)p + HEAD;
@@ -31,7 +33,12 @@ static void give(void *cookie, void *p)
     if (!p)
         return;
     char *start = (char *)p - HEAD;
-    h->now -= *(size_t *)(void *)start;
+    const size_t size = *(size_t *)(void *)start;
+    int whole = 1;
+    for (size_t i = 0; i < TAIL; i++)
+        whole &= (unsigned char)start[HEAD + size + i] == MARK;
+    h->passed += !whole;
+    h->now -= size;
     free(start);
 }
 
@@ -96,6 +103,42 @@ static void try_one(const struct look *look, int width, int height)
     picture_free(&radius);
 }
 
+// A cat's eye of radii at which the cell that memory is planned for, a tile larger than any, has too many chords to keep, and
+// those of the frame have not: the plan must hold for both. Radii differ from row to row, so that views fill their memory too.
+static void try_cells(void)
+{
+    enum { WIDTH = 1280, HEIGHT = 720 };
+    struct hf_params p = hf_default_params();
+    struct held held = {0};
+    struct hf_config config = {
+        .size = sizeof config, .threads = THREADS, .alloc = take, .free = give, .alloc_cookie = &held};
+    struct hf_context *c = NULL;
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radius = picture_new(WIDTH, HEIGHT, 1),
+                   out = picture_new(WIDTH, HEIGHT, 3);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        for (int k = 0; k < 3; k++)
+            colour.plane[k][i] = (float)(i / 32 % 2);
+        const int x = i % WIDTH, y = i / WIDTH;
+        if (x < 400 && y < 300)
+            radius.plane[0][i] = x / 40 % 2 ? (float)(y % 64) * 2 - 125 : (float)(y % 64) * 1.5f + 5;
+    }
+    p.engine = HF_ENGINE_LAYERS;
+    p.layers.quality = HF_LAYERS_BEST;
+    p.layers.no_patterns = 1;
+    p.aperture.cat_eye = 0.7f;
+    p.max_radius = 128;
+    CHECK_INT(hf_open(&c, &config), HF_OK);
+    struct hf_depth depth = picture_depth(&radius);
+    const struct hf_image dst = picture_image(&out), src = picture_image(&colour);
+    depth.type = HF_DEPTH_COC;
+    CHECK_INT(hf_render(c, &dst, &src, &depth, &p), HF_OK);
+    hf_close(&c);
+    CHECK_MSG(held.passed == 0, "%zu blocks are written past their end", held.passed);
+    picture_free(&colour);
+    picture_free(&radius);
+    picture_free(&out);
+}
+
 int main(void)
 {
     static const struct look looks[] = {
@@ -122,5 +165,6 @@ int main(void)
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
         for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
             try_one(&looks[i], sizes[k][0], sizes[k][1]);
+    try_cells();
     return check_report();
 }

@@ -89,7 +89,9 @@ size_t hf_layers_shape_floats(const struct hf_layers *l, int columns, int rows)
     for (int i = 0; l->key.cat_eye > 0 && i < 3 * l->slices * l->groups; i++) {
         const struct hf_slice *s = &l->group[i / (3 * l->slices)][i % (3 * l->slices)];
         const size_t n = s->shape ? nodes_of(l, s, columns, rows) : 0;
-        const size_t need = n ? whole(n) + chords_of(s->shape, n) : 0;
+        // A smaller cell may keep its chords where this one has too many.
+        const size_t chords = n * (size_t)(n ? s->shape->rows : 0);
+        const size_t need = whole(n) + (chords < MOST_CHORDS ? chords : MOST_CHORDS);
         most = need > most ? need : most;
     }
     return place(l, columns, NULL, &p) + most;
