@@ -97,8 +97,8 @@ struct hf_hidden_line {
 #define HF_LAYERS_EDGE 64
 
 // A front that is less than 1 / THIN of its pixel comes nearer to its back the less it is, where the nearest surface of a
-// quad is sought. Otherwise it would decide what is found behind it until it is nothing, and then no more. At 64 and
-// less, pictures and their transposes differ by half as much again.
+// quad is sought. Otherwise the front would decide what is found behind it until nothing of it is left, and then no
+// more. At 64 and less, pictures and their transposes differ by half as much again.
 #define HF_LAYERS_THIN 256
 
 // Negative samples keep their sign.

@@ -154,7 +154,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
         begin(c, stack);
         if (s->radius != 0)
             mark(c, &c->touched, reached);
-        if (stack != NEAR || !l->set.near_only || !c->views || hf_layers_leave_to_views(c, s)) {
+        if (stack != NEAR || hf_layers_leave_to_views(c, s)) {
             hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
             put_under(c, stack, s->level, sums_of(l, s, stack));
         }
@@ -173,7 +173,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .more = &c->samples->beyond};
         begin(c, stack);
         mark(c, &c->touched, reached);
-        if (stack != NEAR || !l->set.near_only || !c->views || hf_layers_leave_to_views(c, behind)) {
+        if (stack != NEAR || hf_layers_leave_to_views(c, behind)) {
             hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
             put_under(c, stack, behind->level, HF_SUMS_HIDDEN);
         }

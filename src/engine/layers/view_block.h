@@ -16,15 +16,13 @@ struct hf_slice_plane {
 };
 
 struct hf_view_block {
-    struct hf_cell c;  // only what hf_layers_place_sources() places
+    struct hf_cell c;  // only what hf_layers_place_sources() places, and `blend`
     // Pixels of the result have the frame's size, or that of the near stack: log2 of it; `tile` of them are a tile's side.
     int unit, tile;
     struct hf_rect made;  // the pixels that are made
     struct hf_slice_plane *plane;
     struct hf_view_plane *list;
-    float *memory;       // of planes
-    const float *blend;  // as in struct hf_cell, from the block's first corner on
-    int corners;
+    float *memory;  // of planes
     // Means of the views as in hf_view_row, and what a cat's eye leaves of them. The first is pixel (made.x0, made.y0).
     float *near[5], *beyond[5], *total;
     ptrdiff_t stride;

@@ -54,33 +54,50 @@ size_t hf_layers_views_floats(const struct hf_layers *l, int columns, int rows)
 
 // ---- where ----
 
-// Pixels between two ranges of tiles; 0 if they touch.
-static int apart(int a, int b)
+// Whether light of a tile comes to another one, dx and dy tiles away: 1 or 0, and between them a part.
+static float near_to(const struct hf_layers_crossing *t, float wide, int dx, int dy)
 {
-    return (abs(a - b) - 1) * TILE > 0 ? (abs(a - b) - 1) * TILE : 0;
+    const int between = hf_max(hf_max(abs(dx), abs(dy)) - 1, 0);
+    return hf_saturate((t->reach * wide - (float)(between * TILE)) * (1.0f / TILE) + 1);
 }
 
-// How far views count in a tile: fully where something is hidden whose light may come there, and not where light comes
-// from radii too large for them. The near stack asks only the tiles beside it what is hidden: 34.31 dB on `foliage`, 34.41 with
-// all that reach it, for twice the time.
-static float blend_at(const struct hf_layers *l, int column, int row)
+// How far views count in a tile: fully where something is hidden whose light may come there. The near stack asks only the tiles
+// beside it what is hidden: 34.31 dB on `foliage`, 34.41 with all that reach it, for twice the time.
+static float much_at(const struct hf_layers *l, int column, int row, int n)
 {
-    const int near_only = l->set.near_only;
-    const float wide = (float)hf_layers_view_width(l), large = hf_layers_view_most(l);
-    const float most = (near_only ? -l->nearest : hf_larger(-l->nearest, l->farthest)) * wide;
-    const int n = near_only && most <= 0.75f * large ? 1 : (int)fminf(most, 65536) / TILE + 2;
-    float much = 0, small = 1;
+    const float wide = (float)hf_layers_view_width(l);
+    float much = 0;
     for (int y = hf_max(row - n, 0); y < hf_min(row + n + 1, l->rows); y++)
         for (int x = hf_max(column - n, 0); x < hf_min(column + n + 1, l->columns); x++) {
             const struct hf_layers_crossing *t = &l->crossing[y * l->columns + x];
-            const float away = (float)hf_max(apart(x, column), apart(y, row)), reach = t->reach * wide;
-            const float near = hf_saturate((reach - away) * (1.0f / TILE) + 1);
-            const float over = near * hf_saturate((reach - 0.75f * large) * (4 / large));
             if (t->much > much)
-                much = hf_larger(t->much * (near_only ? away == 0 : near), much);
-            small = 1 - over < small ? 1 - over : small;
+                much = hf_larger(l->set.near_only ? t->much : t->much * near_to(t, wide, x - column, y - row), much);
         }
-    return much * small;
+    return much;
+}
+
+// How far no light comes to a tile from radii too large for views.
+static float small_at(const struct hf_layers *l, int column, int row, int n)
+{
+    const float wide = (float)hf_layers_view_width(l), large = hf_layers_view_most(l);
+    float small = 1;
+    for (int y = hf_max(row - n, 0); y < hf_min(row + n + 1, l->rows); y++)
+        for (int x = hf_max(column - n, 0); x < hf_min(column + n + 1, l->columns); x++) {
+            const struct hf_layers_crossing *t = &l->crossing[y * l->columns + x];
+            const float over = hf_saturate((t->reach * wide - 0.75f * large) * (4 / large));
+            if (over > 0)
+                small = fminf(1 - near_to(t, wide, x - column, y - row) * over, small);
+        }
+    return small;
+}
+
+static float blend_at(const struct hf_layers *l, int column, int row)
+{
+    const int near_only = l->set.near_only;
+    const float most = (near_only ? -l->nearest : hf_larger(-l->nearest, l->farthest)) * (float)hf_layers_view_width(l);
+    const int n = (int)fminf(most, 65536) / TILE + 2;
+    const float much = much_at(l, column, row, near_only ? 1 : n);
+    return much > 0 ? much * small_at(l, column, row, n) : 0;
 }
 
 int hf_layers_find_views(struct hf_cell *c)
@@ -128,6 +145,8 @@ int hf_layers_leave_to_views(struct hf_cell *c, const struct hf_slice *s)
 {
     const int by = hf_layers_blur_tiles(s);
     int left = 0;
+    if (!c->views || !c->l->set.near_only)
+        return 1;
     for (int ty = -1; ty <= c->rows; ty++)
         for (int tx = -1; tx <= c->columns; tx++) {
             uint8_t *touched = hf_layers_map_at(&c->touched, tx, ty);
@@ -141,11 +160,11 @@ int hf_layers_leave_to_views(struct hf_cell *c, const struct hf_slice *s)
     return left;
 }
 
-static int is_blended(const struct hf_view_block *b, struct hf_rect tiles)
+static int is_blended(const struct hf_cell *c, struct hf_rect tiles)
 {
     for (int y = tiles.y0; y <= tiles.y1; y++)
         for (int x = tiles.x0; x <= tiles.x1; x++)
-            if (b->blend[y * b->corners + x] > 0)
+            if (c->blend[y * c->corners + x] > 0)
                 return 1;
     return 0;
 }
@@ -153,7 +172,7 @@ static int is_blended(const struct hf_view_block *b, struct hf_rect tiles)
 // How far views count at a pixel of a tile.
 static float blend_in(const struct hf_view_block *b, int tx, int ty, int x, int y)
 {
-    const float *top = &b->blend[ty * b->corners + tx], *low = top + b->corners;
+    const float *top = &b->c.blend[ty * b->c.corners + tx], *low = top + b->c.corners;
     const float u = ((float)x + 0.5f) / (float)b->tile, v = ((float)y + 0.5f) / (float)b->tile;
     return (1 - v) * ((1 - u) * top[0] + u * top[1]) + v * ((1 - u) * low[0] + u * low[1]);
 }
@@ -185,7 +204,7 @@ static void make_run(const struct hf_view_block *b, int x, int n, int y0, int y1
     const struct hf_layers *l = b->c.l;
     const struct hf_rect tiles = {tile_of(x, b->tile), tile_of(y0, b->tile),
                                   tile_of(hf_min(x + n, b->made.x1) - 1, b->tile) + 1, tile_of(y1 - 1, b->tile) + 1};
-    if (!is_blended(b, tiles))
+    if (!is_blended(&b->c, tiles))
         return;
     struct hf_view_row row = {.plane = b->list,
                               .views = l->set.views,
@@ -223,6 +242,18 @@ static float weight_of(const struct hf_view_block *b, ptrdiff_t at, float total,
     return near + *fill * far;
 }
 
+// The weight of views that leave nothing open at a pixel.
+static float total_at(const struct hf_view_block *b, ptrdiff_t at)
+{
+    return b->c.l->key.cat_eye > 0 ? b->total[at] : 1;
+}
+
+// What slices left to views is not read.
+static void put(float *to, float value, float blend)
+{
+    *to = blend < 1 ? (1 - blend) * *to + blend * value : value;
+}
+
 // Put a tile's views in the place of what slices made, as far as they count.
 static void mix_tile(const struct hf_view_block *b, const struct hf_cell *of, int tx, int ty, float *const out[4],
                      ptrdiff_t stride)
@@ -234,17 +265,16 @@ static void mix_tile(const struct hf_view_block *b, const struct hf_cell *of, in
                             (float *[]){light[0], light[1], light[2], light[3], light[4], light[5]});
         for (int x = 0; x < TILE; x++) {
             const ptrdiff_t at = pixel_at(b, tx * TILE + x, ty * TILE + y);
-            const float blend = blend_in(b, tx, ty, x, y), total = l->key.cat_eye > 0 ? b->total[at] : 1;
+            const float blend = blend_in(b, tx, ty, x, y), total = total_at(b, at);
             float fill;
             const float w = weight_of(b, at, total, light[4][x], &fill), rest = hf_larger(1 - light[4][x], 0);
             if (!(w > 0 && blend > 0))
                 continue;
             for (int i = 0; i < l->channels; i++) {
-                float *to = &out[i][y * stride + x];
                 float own = rest * ((b->near[i][at] + fill * b->beyond[i][at]) / w) + light[i][x];
                 if (i == 3)
                     own = fabsf(own - 1) < HF_LAYERS_OPAQUE ? 1 : own;
-                *to = blend < 1 ? (1 - blend) * *to + blend * own : own;
+                put(&out[i][y * stride + x], own, blend);
             }
         }
     }
@@ -258,16 +288,10 @@ static void mix_block(const struct hf_view_block *b, const struct hf_cell *of, f
             float *to[4] = {NULL};
             for (int i = 0; i < b->c.l->channels; i++)
                 to[i] = out[i] + ty * TILE * stride + tx * TILE;
-            if (is_blended(b, (struct hf_rect){tx, ty, tx + 1, ty + 1}) &&
+            if (is_blended(&b->c, (struct hf_rect){tx, ty, tx + 1, ty + 1}) &&
                 !hf_layers_is_sharp(of, tx + (b->c.x0 - of->x0) / TILE, ty + (b->c.y0 - of->y0) / TILE))
                 mix_tile(b, of, tx, ty, to, stride);
         }
-}
-
-// What slices left to views is not read.
-static void put(float *to, float value, float blend)
-{
-    *to = blend < 1 ? (1 - blend) * *to + blend * value : value;
 }
 
 // Put what views see in the place of what the near stack holds, as far as they count.
@@ -280,8 +304,7 @@ static void mix_near(const struct hf_view_block *b, const struct hf_cell *of)
         for (int x = b->made.x0; x < b->made.x1; x++) {
             const ptrdiff_t at = pixel_at(b, x, y);
             const int tx = tile_of(x, b->tile);
-            const float blend = blend_in(b, tx, ty, x - tx * b->tile, y - ty * b->tile),
-                        total = l->key.cat_eye > 0 ? b->total[at] : 1;
+            const float blend = blend_in(b, tx, ty, x - tx * b->tile, y - ty * b->tile), total = total_at(b, at);
             if (!(blend > 0 && total > 0))
                 continue;
             for (int i = 0; i < l->channels; i++)
@@ -295,8 +318,9 @@ static void mix_near(const struct hf_view_block *b, const struct hf_cell *of)
 static int make_block(struct hf_view_block *b)
 {
     const struct hf_layers *l = b->c.l;
-    if (!is_blended(b, (struct hf_rect){tile_of(b->made.x0, b->tile), tile_of(b->made.y0, b->tile),
-                                        tile_of(b->made.x1 - 1, b->tile) + 1, tile_of(b->made.y1 - 1, b->tile) + 1}))
+    if (!is_blended(&b->c,
+                    (struct hf_rect){tile_of(b->made.x0, b->tile), tile_of(b->made.y0, b->tile),
+                                     tile_of(b->made.x1 - 1, b->tile) + 1, tile_of(b->made.y1 - 1, b->tile) + 1}))
         return 0;
     hf_layers_find_present(&b->c);
     hf_layers_mark_plain(&b->c);
@@ -327,8 +351,7 @@ static struct hf_rect near_tiles(const struct hf_cell *c)
     struct hf_rect r = {c->columns, c->rows, 0, 0};
     for (int ty = -1; ty <= c->rows; ty++)
         for (int tx = -1; tx <= c->columns; tx++) {
-            const float *top = &c->blend[ty * c->corners + tx], *low = top + c->corners;
-            if (top[0] > 0 || top[1] > 0 || low[0] > 0 || low[1] > 0) {
+            if (is_blended(c, (struct hf_rect){tx, ty, tx + 1, ty + 1})) {
                 const int x = hf_layers_within(tx, 0, c->columns - 1), y = hf_layers_within(ty, 0, c->rows - 1);
                 r = (struct hf_rect){hf_min(r.x0, x), hf_min(r.y0, y), hf_max(r.x1, x + 1), hf_max(r.y1, y + 1)};
             }
@@ -350,9 +373,9 @@ void hf_layers_put_views(const struct hf_cell *c, float *memory, float *const ou
                                             .x0 = c->x0 + tx * TILE,
                                             .y0 = c->y0 + ty * TILE,
                                             .columns = hf_min(wide, r.x1 - tx),
-                                            .rows = hf_min(high, r.y1 - ty)},
-                                      .blend = c->blend + ty * c->corners + tx,
-                                      .corners = c->corners};
+                                            .rows = hf_min(high, r.y1 - ty),
+                                            .blend = c->blend + ty * c->corners + tx,
+                                            .corners = c->corners}};
             place(&b, rim_of(c, &b), memory);
             if (!make_block(&b))
                 continue;

@@ -28,7 +28,7 @@ static inline double hf_layers_view_width(const struct hf_layers *l)
     return l->lens_reach * (1 + fabs((double)l->chromatic));
 }
 
-// A slice as views read it: planes of what it holds. x has full resolution, y that of `level`.
+// A slice as views read it: planes of what it holds. x has the resolution of the result, y one coarser by `level`.
 struct hf_view_plane {
     // The weight at the block's pixel (0, 0), over the number of views; colours follow, `channel` floats apart.
     const float *at;
