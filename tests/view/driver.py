@@ -129,6 +129,12 @@ class View:
     def click(self, x, y, *more):
         self.xdotool("mousemove", x, y, "click", *(more or ("1",)))
 
+    def drag(self, start, *places):
+        """Press the button at the start, move, let go. On a busy machine the X server hands on what the button does
+        before the moves around it; a pause, shorter than any hand's, keeps their order."""
+        moves = [word for place in places for word in ("mousemove", *place)]
+        self.xdotool("mousemove", *start, "sleep", 0.2, "mousedown", 1, "sleep", 0.2, *moves, "sleep", 0.2, "mouseup", 1)
+
     def pixels(self, x, y, width, height):
         """R, G, B of a part of the screen."""
         return subprocess.run(["import", "-window", "root", "-depth", "8", "-crop", "%dx%d+%d+%d" % (width, height, x, y),

@@ -64,11 +64,11 @@ def check_mouse(screen):
         # The camera is rounded to whole pixels of the screen, before and after.
         slack = 0.5 / (zoom - 1) + 0.5 / zoom
         tests.check("the wheel zooms to the pointer", max(abs(a - b) for a, b in zip(before, after)) <= slack, before, after)
-    view.xdotool("mousedown", "1", "mousemove", wheel[0] + 40, wheel[1] + 25, "mousemove", wheel[0] + 60, wheel[1] + 35, "mouseup", "1")
+    view.drag(wheel, (wheel[0] + 40, wheel[1] + 25), (wheel[0] + 60, wheel[1] + 35))
     moved = view.drawn("camera=%g,%g,%g," % (camera_of(drawn)[0], camera_of(drawn)[1] + 60, camera_of(drawn)[2] + 35))
-    tests.check("dragging does not focus", moved["focus"] == drawn["focus"], moved)
     view.key("Right")
     right = view.drawn("camera=%g,%g," % (camera_of(moved)[0], camera_of(moved)[1] - 64))
+    tests.check("dragging does not focus", right["focus"] == drawn["focus"], right)
     tests.check("an arrow moves the picture", camera_of(right)[2] == camera_of(moved)[2], right)
     for zoom in range(5, 33):
         view.key("plus")
@@ -126,7 +126,7 @@ def check_closer(screen):
     view.key("d")
     view.wait("^divider 1 at 0.5")
     y, middle, to = int(canvas[1] + 200), int(canvas[0] + canvas[2] / 2), int(canvas[0] + canvas[2] / 4)
-    view.xdotool("mousemove", middle, y, "mousedown", "1", "mousemove", middle - 20, y, "mousemove", to, y, "mouseup", "1")
+    view.drag((middle, y), (middle - 20, y), (to, y))
     tests.check("the divider follows the mouse", view.wait(r"^divider 1 at 0\.2[45]") is not None)
     view.key("shift+Right")
     tests.check("and the keys", float(view.wait(r"^divider 1 at (0\.2[6-9]\d*)").group(1)) > 0.26)
