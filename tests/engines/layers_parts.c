@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of layers one by one: how closely slices lie, which colour a side of an edge gets if none of its pixels is
-// un-mixed, and how much a lamp counts among hidden samples.
+// un-mixed, what shows beside an edge in one pixel alone, and how much a lamp counts among hidden samples.
 #include <float.h>
 #include <math.h>
 
@@ -55,7 +55,7 @@ static void farthest(void)
         middle[y] = 0;
         slope[y] = 1;
         row.radius[y] = radius[y];
-        row.colour[y][0] = colour[y];
+        row.colour[y][0] = row.colour[y][1] = row.colour[y][2] = colour[y];
         row.sure[y] = sure[y];
         for (int x = 0; x < N; x++) {
             const int front = x == AT && y >= 2 && y <= 4;
@@ -88,6 +88,45 @@ static void farthest(void)
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 0);
 }
 
+// A bar covers two fifths of a pixel. The rest of the pixel is dark, and the wall beside it bright: there ends the dark part
+// of a pattern. The pixel's middle, and so its depth, is the wall's, so the bar covers at most half of the pixel. With that
+// share the means leave v - (bar + bright) / 2 = (6 dark - bar - 5 bright) / 10 unexplained, of which the back gets one and a
+// half: it is dark + (bright - dark) / 4 + 3 (dark - bar) / 20.
+static void sliver(void)
+{
+    enum { N = 9, AT = 4, ROWS = 7 };
+    static const float bar[3] = {0.4f, 0.12f, 0.08f}, dark[3] = {0.25f, 0.1f, 0.1f}, bright[3] = {0.9f, 0.85f, 0.3f};
+    float radius[N], sure[N], middle[N] = {0}, slope[N], colour[3][N], out[2][6][N] = {{{0}}};
+    struct hf_unmix_row row = {.channels = 3, .middle = middle + AT, .slope = slope + AT};
+    uint8_t any[1] = {0};
+    row.any = any;
+    for (int x = 0; x < N; x++) {
+        radius[x] = x < AT ? -8 : 8;
+        sure[x] = x < AT - 1 || x > AT;
+        slope[x] = 2.0f / 16;
+        for (int c = 0; c < 3; c++)
+            colour[c][x] = x < AT ? bar[c] : x > AT ? bright[c] : 0.4f * bar[c] + 0.6f * dark[c];
+    }
+    for (int y = 0; y < ROWS; y++) {
+        row.radius[y] = radius + AT;
+        row.sure[y] = sure + AT;
+        for (int c = 0; c < 3; c++)
+            row.colour[y][c] = colour[c] + AT;
+    }
+    for (int i = 0; i < 6; i++) {
+        row.seen[i] = out[0][i] + AT;
+        row.mixed[i] = out[1][i] + AT;
+    }
+    hf_layers_unmix_c(&row, 1);
+    CHECK_MSG(out[1][4][AT] >= 0.5f, "the back covers %g of the pixel", (double)out[1][4][AT]);
+    for (int c = 0; c < 3; c++) {
+        const double off = fabs(out[1][c][AT] - dark[c]),
+                     most = fabs(bright[c] - dark[c]) / 4 + 3 * fabs(dark[c] - bar[c]) / 20;
+        CHECK_MSG(off <= most + 8 * FLT_EPSILON, "channel %d of the back is %g, not %g", c, (double)out[1][c][AT],
+                  (double)dark[c]);
+    }
+}
+
 // A lamp of 4096 among hidden samples of 1 at the same depth. It counts by the fourth power of 16 / 64, a 256th; by a
 // tenth of that for its other colour; and by its place at the end of the line, one of 49 parts.
 static void lamp_in_line(void)
@@ -113,6 +152,7 @@ int main(void)
     for (int quality = HF_LAYERS_DRAFT; quality <= HF_LAYERS_BEST; quality++)
         slices((enum hf_layers_quality)quality);
     farthest();
+    sliver();
     lamp_in_line();
     return check_report();
 }

@@ -21,9 +21,9 @@ struct truth {
 static const double MARGIN = 0.2;
 
 static const struct truth scenes[] = {
-    {"lights", 5, 0.37f, 29.79},
-    {"fence", 6, 0.46f, 33.75},
-    {"foliage", 4, 0.7f, 34.05},
+    {"lights", 5, 0.37f, 31.30},
+    {"fence", 6, 0.46f, 34.36},
+    {"foliage", 4, 0.7f, 34.33},
 };
 
 static void measure(struct hf_context *c, const char *folder, const struct truth *t)

@@ -52,7 +52,7 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
             const double s = front_of(radius_at(f, x + u, y + v), middle, slope), part = front ? s : 1 - s;
             if ((!u && !v) || part == 0)
                 continue;
-            const double known = part * sure(f, x + u, y + v, &unused, &unused) / pow(u * u + v * v, 2);
+            const double known = part * pow(sure(f, x + u, y + v, &unused, &unused), 2) / pow(u * u + v * v, 2);
             const double w = known * dimmed(light_of(f, x + u, y + v), own);
             all += known;
             sum += w;
@@ -71,7 +71,8 @@ static double side_mean(const struct frame *f, int x, int y, double middle, doub
     return all;
 }
 
-// The mean of a side, weighted by the eighth power of the difference of colours from `other` times its part.
+// The mean of a side, weighted by the eighth power of the difference of colours from `other` times its part. In a front,
+// samples more than eight times as bright as the pixel count less.
 static void side_farthest(const struct frame *f, int x, int y, double middle, double slope, int front,
                           const double other[5], double mean[5])
 {
@@ -79,7 +80,7 @@ static void side_farthest(const struct frame *f, int x, int y, double middle, do
     for (int i = 0; i < 25; i++) {
         const int px = x + i % 5 - 2, py = y + i / 5 - 2;
         const double s = front_of(radius_at(f, px, py), middle, slope);
-        part[i] = front ? s : 1 - s;
+        part[i] = front ? s * dimmed(light_of(f, px, py), 8 * light_of(f, x, y)) : 1 - s;
         far[i] = 0;
         for (int c = 0; c < f->channels; c++)
             far[i] += part[i] * fabs(colour_at(f, c, px, py) - other[c]);
@@ -97,8 +98,10 @@ static void side_farthest(const struct frame *f, int x, int y, double middle, do
         mean[c] = sum > 0 ? mean[c] / sum : 0;
 }
 
+// behind: how much of what neither mean explains is the back's alone, up to half, where its depth is the back's and the means
+// differ. The front has no more than the rest.
 static double share_of(const struct frame *f, int x, int y, double a0, const double *front, const double *back,
-                       const double spread[2])
+                       const double spread[2], double *behind)
 {
     double along = 0, apart = 0, size = 0, off = 0;
     for (int c = 0; c < f->channels; c++) {
@@ -110,7 +113,9 @@ static double share_of(const struct frame *f, int x, int y, double a0, const dou
     const double a = apart + depth > 0 ? fmin(fmax((along + depth * a0) / (apart + depth), 0), 1) : a0;
     for (int c = 0; c < f->channels; c++)
         off += pow(colour_at(f, c, x, y) - a * front[c] - (1 - a) * back[c], 2);
-    return a0 + (a - a0) * (apart + off > 0 ? apart / (apart + off) : 0);
+    const double trusted = a0 + (a - a0) * (apart + off > 0 ? apart / (apart + off) : 0);
+    *behind = apart > 0 ? fmin(150 * off / apart, 1) * fmin(fmax(5 * apart / size - 1, 0), 1) * (1 - a0) / 2 : 0;
+    return fmin(trusted, 1 - *behind);
 }
 
 static double light_at(const struct frame *f, int x, int y)
@@ -159,18 +164,20 @@ static void unmix(struct frame *f, int x, int y)
         mean[less][c] = known * mean[less][c] + (1 - known) * far[c];
     spread[less] *= known;
     const double a0 = front_of(own, middle, slope), lamp = lamp_of(f, x, y, mean);
-    const double share = share_of(f, x, y, a0, mean[0], mean[1], spread),
+    double behind;
+    const double share = share_of(f, x, y, a0, mean[0], mean[1], spread, &behind),
                  a = share + lamp * (fmin(share, 0.75) - share);
     const double by = apart * fmin((weight[0] + weight[1]) / 0.25, 1);
     seen[WEIGHT] = 1 - by * (1 - a);
     mixed[WEIGHT] = by * (1 - a);
     const double whole = seen[WEIGHT] > 0 ? (1 - by) / seen[WEIGHT] : 0;
+    const double scale = a < 1 ? 1 + behind * a / (1 - a) : 1;
     for (int c = 0; c < f->channels; c++) {
         const double v = colour_at(f, c, x, y), rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
         const double moved = c < 3 ? lamp * fmax(rest, 0) : 0;
         const double front = fmin(fmax(mean[0][c] + rest - moved, fmin(mean[0][c], v)), fmax(mean[0][c], v));
         seen[c] = whole * v + (1 - whole) * front;
-        mixed[c] = fmin(fmax(mean[1][c] + rest, fmin(mean[1][c], v)), fmax(mean[1][c], v));
+        mixed[c] = fmin(fmax(mean[1][c] + rest * scale, fmin(mean[1][c], v)), fmax(mean[1][c], v));
     }
     seen[RADIUS] = whole * own + (1 - whole) * (a0 * own + (1 - a0) * mean[0][4]);
     mixed[RADIUS] = a0 * mean[1][4] + (1 - a0) * own;
@@ -239,7 +246,7 @@ static void quad(const struct frame *f, int x, int y, double *out)
     for (int i = 0; i < 4; i++) {
         const int px = clamp(2 * x + i % 2, 0, f->width - 1), py = clamp(2 * y + i / 2, 0, f->height - 1);
         const double *mixed = at(&f->mixed, px, py), *seen = at(&f->seen, px, py);
-        const double own = seen[WEIGHT] * fmax(1 - 64 * mixed[WEIGHT], 0), weight = mixed[WEIGHT] + own;
+        const double own = seen[WEIGHT] * pow(fmax(1 - pow(64 * mixed[WEIGHT], 2), 0), 2), weight = mixed[WEIGHT] + own;
         for (int c = 0; c < SAMPLE; c++)
             s[i][c] = mixed[WEIGHT] > 0 ? (mixed[WEIGHT] * mixed[c] + own * seen[c]) / weight : seen[c];
         s[i][WEIGHT] = weight;

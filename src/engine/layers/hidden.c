@@ -11,7 +11,8 @@
 // tiny back is partly itself, or its quad would jump from one surface to the other.
 static float behind_of(const float *const seen[6], const float *const mixed[6], int at, float *weight)
 {
-    const float m = mixed[4][at], own = m > 0 ? seen[4][at] * hf_saturate(1 - HF_LAYERS_EDGE * m) : seen[4][at];
+    const float m = mixed[4][at], part = HF_LAYERS_EDGE * m, less = hf_saturate(1 - part * part);
+    const float own = m > 0 ? seen[4][at] * (less * less) : seen[4][at];
     *weight = m > 0 ? m + own : own;
     return m > 0 ? m / *weight : 0;
 }

@@ -32,7 +32,8 @@ HF_INLINE struct layers_pairs layers_pairs_at(const float *const seen[6], const 
         weight[i] = s;
         if (!vm_any(p.mixed[i]))
             continue;
-        const vf own = vf_mul(s, vf_max(vf_fnma(vf_set1(HF_LAYERS_EDGE), m, one), zero));
+        const vf part = vf_mul(vf_set1(HF_LAYERS_EDGE), m), less = vf_max(vf_fnma(part, part, one), zero);
+        const vf own = vf_mul(s, vf_mul(less, less));
         weight[i] = vf_select(p.mixed[i], vf_add(m, own), s);
         p.share[i] = vf_keep(p.mixed[i], vf_div(m, weight[i]));
     }

@@ -25,18 +25,31 @@ const float hf_unmix_weights[7][7] = {
 
 enum { SIDE = 5 };  // pixels each way
 
+// An eighth of a colour's brightness, which is finite even for the largest samples.
+static float eighth_light(float red, float green, float blue)
+{
+    return (fabsf(red) + fabsf(green) + fabsf(blue)) * 0.125f;
+}
+
+static float light_of(const struct hf_unmix_row *u, int y, int x)
+{
+    return eighth_light(u->colour[y][0][x], u->colour[y][1][x], u->colour[y][2][x]);
+}
+
 // The mean of those of 5 x 5 pixels that are on one side, weighted by the eighth power of their distance in colour from
 // `other`. That is nearly the farthest pixel alone; but where two are equally far, a moving picture does not jump from
 // one to the other. A pixel's distance counts by its share of the side. Otherwise one that barely belongs to it, by the last
-// bit of a radius, would outweigh those that do.
+// bit of a radius, would outweigh those that do. In a front, samples far brighter than the mixed pixel are dimmed (PLAIN): a
+// lamp is the farthest from any other colour. A back is a lamp more often.
 static void farthest(const struct hf_unmix_row *u, int x, int front, const float *other, float *colour, float *radius)
 {
+    const float plain = light_of(u, 3, x) * HF_UNMIX_PLAIN;
     float share[SIDE * SIDE], distance[SIDE * SIDE], most = 0, sum = 0;
     int pixel[SIDE * SIDE], count = 0;
     for (int k = 0; k < SIDE * SIDE; k++) {
         const int y = 1 + k / SIDE, i = x - 2 + k % SIDE;
         const float of_front = hf_edges_front(u->middle[x], u->slope[x], u->radius[y][i]);
-        share[count] = front ? of_front : 1 - of_front;
+        share[count] = front ? of_front * hf_layers_dimmed(light_of(u, y, i), plain) : 1 - of_front;
         pixel[count] = k;
         count += share[count] > 0;  // mostly few pixels
     }
@@ -92,8 +105,10 @@ static void keep(const struct hf_unmix_row *u, int x)
 }
 
 // The front's share of the pixel, given the means of both sides and the variances of their colours. Where the colours
-// of the pixel's own surface vary too much to tell, it is the share by depth, a0.
-static float share(const struct hf_unmix_row *u, int x, float a0, const float *f, const float *b, const float *spread)
+// of the pixel's own surface vary too much to tell, it is the share by depth, a0. behind: how much of the front's part of what
+// neither mean explains is the back's.
+static float share(const struct hf_unmix_row *u, int x, float a0, const float *f, const float *b, const float *spread,
+                   float *behind)
 {
     float along = 0, apart = 0, size = 0, off = 0;
     for (int c = 0; c < u->channels; c++) {
@@ -111,18 +126,11 @@ static float share(const struct hf_unmix_row *u, int x, float a0, const float *f
         off = off + rest * rest;
     }
     const float trust = apart / (apart + off);
-    return trust >= 0 ? a0 + (a - a0) * trust : a0;
-}
-
-// An eighth of a colour's brightness, which is finite even for the largest samples.
-static float eighth_light(float red, float green, float blue)
-{
-    return (fabsf(red) + fabsf(green) + fabsf(blue)) * 0.125f;
-}
-
-static float light_of(const struct hf_unmix_row *u, int y, int x)
-{
-    return eighth_light(u->colour[y][0][x], u->colour[y][1][x], u->colour[y][2][x]);
+    a = trust >= 0 ? a0 + (a - a0) * trust : a0;
+    *behind = apart > 0 ? hf_saturate(off / apart * HF_UNMIX_UNEXPLAINED) *
+                              hf_saturate(apart / size * HF_UNMIX_ALIKE - 1) * ((1 - a0) * HF_UNMIX_HALF)
+                        : 0;
+    return a < 1 - *behind ? a : 1 - *behind;
 }
 
 // Turn the sums of a side into its mean. Returns the variance of its colours.
@@ -172,7 +180,7 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
             const int at = x + i - 3;
             if (y == 3 && i == 3)
                 continue;
-            const float w = u->sure[y][at] * hf_unmix_weights[y][i];
+            const float sure = u->sure[y][at], w = sure * sure * hf_unmix_weights[y][i];
             const float front = w * hf_edges_front(middle, slope, u->radius[y][at]), of[2] = {front, w - front};
             const float counts = hf_layers_dimmed(light_of(u, y, at), plain);
             float square = 0;
@@ -195,17 +203,19 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
         return;
     }
     const float known = hf_saturate((weight[0] + weight[1]) * (1 / HF_UNMIX_FAINT));
-    const float own_share = share(u, x, a0, mean[0], mean[1], spread), by = (1 - u->sure[3][x]) * known;
+    float behind;
+    const float own_share = share(u, x, a0, mean[0], mean[1], spread, &behind), by = (1 - u->sure[3][x]) * known;
     const float lamp = lit(u, x, mean), less = own_share < HF_UNMIX_RIM ? own_share : HF_UNMIX_RIM;
     const float a = lamp * (less - own_share) + own_share;
     // The part of the pixel that is not un-mixed keeps its colour and goes with the front.
     const float seen = by * (a - 1) + 1, whole = seen > 0 ? (1 - by) / seen : 0;
+    const float scale = a < 1 ? 1 + behind * (a / (1 - a)) : 1;  // at most 2
     for (int c = 0; c < u->channels; c++) {
         const float v = u->colour[3][c][x], rest = v - a * mean[0][c] - (1 - a) * mean[1][c];
         const float more = rest > 0 && c < 3 ? rest : 0;
         const float front = hf_edges_between(rest - lamp * more + mean[0][c], mean[0][c], v);
         u->seen[c][x] = whole * (v - front) + front;
-        u->mixed[c][x] = hf_edges_between(mean[1][c] + rest, mean[1][c], v);
+        u->mixed[c][x] = hf_edges_between(mean[1][c] + rest * scale, mean[1][c], v);
     }
     const float front = (1 - a0) * (mean[0][4] - own) + own;
     u->seen[4][x] = seen;  // at most 1, and 1 where the other is 0: slices do not read the weights of such tiles

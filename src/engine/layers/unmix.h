@@ -5,7 +5,8 @@
 
 #include "engine/layers/kernels.h"
 
-// Which pixels are mixed: pixel/edges.h.
+// Which pixels are mixed: pixel/edges.h. In the means of both sides a pixel counts by the square of how surely it is not
+// mixed: where the last sure pixel of a thin thing goes, its weight goes slowly.
 // FAINT: un-mixing fades out as the weight of both sides falls below this.
 // LEAN: where one side has less than this share of that weight, its mean leans on those of its pixels whose colours are
 // farthest from the other side's mean. On a slope that is barely mixed, weights change ten times as fast as radii. FAINT
@@ -20,6 +21,15 @@
 // SPREAD * v. v is the variance of the estimate by colour: the sides' colour variance over the squared distance between
 // front and back. The estimate by depth is wrong by about an eighth of a pixel.
 #define HF_UNMIX_SPREAD 60
+// A straight edge covers at most half of a pixel whose middle it does not cover. So where a pixel has the back's depth, but
+// its colour is not a mixture of both means, something else shows in it beside the front: the front's share is at most HALF
+// then, and of what is not explained as much again as the front's part of it goes to the back. Where the means explain the
+// colour they are believed: renderers take depth anywhere in the pixel. UNEXPLAINED: 1 / the part of the squared distance
+// between the means that the rest has where that counts fully; less counts less. ALIKE: means whose squared distance is
+// below 1 / ALIKE of the sum of their squares explain nothing; from 2 / ALIKE on they do fully.
+#define HF_UNMIX_HALF 0.5f
+#define HF_UNMIX_UNEXPLAINED 150
+#define HF_UNMIX_ALIKE 5
 
 // A mixed pixel more than LAMP times as bright as its front and its back shows part of a lamp: the edge hides so much
 // of the lamp that no whole pixel shows it. From LAMP + 1 / 2 on it counts wholly as a lamp. Drawn with a sharp front

@@ -71,13 +71,15 @@ static __attribute__((noinline)) void layers_farthest(const struct hf_unmix_row 
                                                       const vf other[4], vf colour[5])
 {
     const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x), one = vf_set1(1);
+    const vf plain = vf_mul(layers_light_of(u, 3, x), vf_set1(HF_UNMIX_PLAIN));
     vf share[25], distance[25], most = vf_zero(), sum = vf_zero();
     for (int k = 0; k < 25; k++) {
         const int y = 1 + k / 5, at = x - 2 + k % 5;
         const vf s = vf_add(vf_mul(vf_sub(middle, vf_load(u->radius[y] + at)), slope), vf_set1(0.5f));
         const vf of_front = vf_min(vf_max(s, vf_zero()), one);
         vf d = vf_zero();
-        share[k] = vf_select(front, of_front, vf_sub(one, of_front));
+        const vf dimmed = vf_mul(of_front, layers_dimmed(vf_load(u->light[y] + at), plain));
+        share[k] = vf_select(front, dimmed, vf_sub(one, of_front));
         for (int c = 0; c < channels; c++) {
             const vf apart = vf_abs(vf_sub(vf_load(u->colour[y][c] + at), other[c]));
             d = vf_add(d, vf_mul(apart, vf_set1(0.125f)));
@@ -140,7 +142,8 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
             const int at = x + i - 3;
             if (y == 3 && i == 3)
                 continue;
-            const vf w = vf_mul(vf_load(u->sure[y] + at), vf_set1(hf_unmix_weights[y][i]));
+            const vf sure = vf_load(u->sure[y] + at);
+            const vf w = vf_mul(vf_mul(sure, sure), vf_set1(hf_unmix_weights[y][i]));
             const vf r = vf_load(u->radius[y] + at), f = vf_mul(w, layers_front(middle, slope, r)), b = vf_sub(w, f);
             weight[0] = vf_add(weight[0], f);
             weight[1] = vf_add(weight[1], b);
@@ -175,8 +178,14 @@ HF_INLINE vf layers_rest(const struct hf_unmix_row *u, int x, int c, vf a, vf me
     return vf_fnma(vf_sub(vf_set1(1), a), mean[1][c], vf_fnma(a, mean[0][c], vf_load(u->colour[3][c] + x)));
 }
 
+// 0 to 1; 0 for NaN.
+HF_INLINE vf layers_unit(vf v)
+{
+    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
+}
+
 HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channels, vf a0, vf mean[2][5],
-                          const vf spread[2])
+                          const vf spread[2], vf *behind)
 {
     vf along = vf_zero(), apart = vf_zero(), size = vf_zero(), off = vf_zero();
     for (int c = 0; c < channels; c++) {
@@ -195,7 +204,12 @@ HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channel
         off = vf_fma(rest, rest, off);
     }
     const vf trust = vf_div(apart, vf_add(apart, off));
-    return vf_select(vf_le(zero, trust), vf_fma(vf_sub(a, a0), trust, a0), a0);
+    a = vf_select(vf_le(zero, trust), vf_fma(vf_sub(a, a0), trust, a0), a0);
+    const vf unexplained = vf_mul(vf_div(off, apart), vf_set1(HF_UNMIX_UNEXPLAINED));
+    const vf differ = vf_sub(vf_mul(vf_div(apart, size), vf_set1(HF_UNMIX_ALIKE)), one);
+    const vf part = vf_mul(layers_unit(unexplained), layers_unit(differ));
+    *behind = vf_keep(vf_gt(apart, zero), vf_mul(part, vf_mul(b0, vf_set1(HF_UNMIX_HALF))));
+    return vf_min(a, vf_sub(one, *behind));
 }
 
 // How far each pixel shows a lamp behind the edge, lane by lane: lamps are few.
@@ -227,16 +241,18 @@ HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const in
     const vf own = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
     const vf a0 = layers_front(vf_load(u->middle + x), vf_load(u->slope + x), own);
     const vf by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known), lamp = layers_lit(u, x, mixed, mean);
-    vf a = layers_share(u, x, channels, a0, mean, spread);
+    vf behind, a = layers_share(u, x, channels, a0, mean, spread, &behind);
     a = vf_fma(lamp, vf_sub(vf_min(a, vf_set1(HF_UNMIX_RIM)), a), a);
     const vf seen = vf_fma(by, vf_sub(a, one), one);
     const vf whole = vf_keep(vf_gt(seen, zero), vf_div(vf_sub(one, by), seen));
+    const vf more_back = vf_mul(behind, vf_div(a, vf_sub(one, a)));
+    const vf scale = vf_select(vf_lt(a, one), vf_add(one, more_back), one);  // at most 2
     for (int c = 0; c < channels; c++) {
         const vf rest = layers_rest(u, x, c, a, mean);
         const vf v = vf_load(u->colour[3][c] + x);
         const vf more = c < 3 ? vf_max(rest, zero) : zero;
         const vf front = vf_between(vf_add(vf_fnma(lamp, more, rest), mean[0][c]), mean[0][c], v);
-        const vf back = vf_between(vf_add(mean[1][c], rest), mean[1][c], v);
+        const vf back = vf_between(vf_fma(rest, scale, mean[1][c]), mean[1][c], v);
         vf_store(u->seen[c] + x, vf_select(mixed, vf_fma(whole, vf_sub(v, front), front), v));
         vf_store(u->mixed[c] + x, vf_keep(mixed, back));
     }
