@@ -188,6 +188,10 @@ static void found_before(const struct run *r)
     } found[] = {
         // hexagon, 2.6 codes: a front in a mixed pixel, whose share came to nothing, had another radius from there on.
         {RANGE_RADIUS, STAGE_LAMPS, 2, 0.9814, 0.98141},
+        // layers, 9.6 codes: the front of a mixed pixel, whose last sure pixel went, leaned on a lamp.
+        {RANGE_DISTANCE, STAGE_LAMPS, 1, 6.0798, 6.0799},
+        // layers, 3.1 codes: the last sure pixels of a card went at one rate, and then their mean.
+        {RANGE_DISTANCE, STAGE_CARDS, 5, 9.2014, 9.2015},
     };
     for (size_t k = 0; k < sizeof found / sizeof *found; k++) {
         struct scene s = stage_make(found[k].stage, found[k].seed, WIDTH, HEIGHT);
