@@ -22,11 +22,12 @@
 // front and back. The estimate by depth is wrong by about an eighth of a pixel.
 #define HF_UNMIX_SPREAD 60
 // A straight edge covers at most half of a pixel whose middle it does not cover. So where a pixel has the back's depth, but
-// its colour is not a mixture of both means, something else shows in it beside the front: the front's share is at most HALF
-// then, and of what is not explained as much again as the front's part of it goes to the back. Where the means explain the
-// colour they are believed: renderers take depth anywhere in the pixel. UNEXPLAINED: 1 / the part of the squared distance
-// between the means that the rest has where that counts fully; less counts less. ALIKE: means whose squared distance is
-// below 1 / ALIKE of the sum of their squares explain nothing; from 2 / ALIKE on they do fully.
+// its colour is not a mixture of both means, something else shows beside the front: the front's share is at most HALF
+// then, and HALF of the front's part of what is not explained goes to the back as well. Where the means explain the colour
+// they are believed: renderers take depth anywhere in the pixel.
+// UNEXPLAINED: a rest whose square is 1 / UNEXPLAINED of the squared distance between the means counts fully, a smaller one
+// less. ALIKE: where that distance is below 1 / ALIKE of the sum of their squares the means are alike, and a rest says
+// nothing; from 2 / ALIKE on it counts fully.
 #define HF_UNMIX_HALF 0.5f
 #define HF_UNMIX_UNEXPLAINED 150
 #define HF_UNMIX_ALIKE 5
