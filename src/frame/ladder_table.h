@@ -13,11 +13,11 @@
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_GAUSSIAN, .hexagon.resolution = 2, .scatter.resolution = 2, .gaussian.resolution = 2, .gaussian.iterations = 4}}, \
     {"--engine gather", 0.033948f, 0.069395f, 19.32f, \
      {HF_PARAMS_DEFAULTS}}, \
-    {"--engine layers", 0.022294f, 0.027203f, 46.38f, \
+    {"--engine layers", 0.021534f, 0.027193f, 46.38f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS}}, \
-    {"--engine layers --layers-quality best --lens-points 1", 0.021463f, 0.027434f, 86.30f, \
+    {"--engine layers --layers-quality best --lens-points 1", 0.020777f, 0.027436f, 86.30f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3, .layers.lens_points = 1}}, \
-    {"--engine layers --layers-quality best", 0.020842f, 0.027420f, 224.4f, \
+    {"--engine layers --layers-quality best", 0.020353f, 0.027356f, 224.4f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3}}
 // steps of draft, standard, high and best
 #define HF_LADDER_QUALITIES 1, 2, 4, 4
