@@ -54,7 +54,7 @@ static void part_row_simd(const float *near, float share, float size, int n, flo
 {
     for (int i = 0; i < n; i += VF_N) {
         const vf span = vf_add(vf_mul(vf_set1(0.5f), vf_load(near + i)), vf_set1(1));
-        const vf part = coc_saturate(vf_sub(vf_set1(2), vf_div(vf_set1(size), span)));
+        const vf part = vf_saturate(vf_sub(vf_set1(2), vf_div(vf_set1(size), span)));
         vf_store(out + i, vf_mul(vf_set1(share), part));
     }
 }

@@ -21,12 +21,6 @@
         HF_WITH_FORM_(HF_FORM_COC, call)                                                                               \
     }
 
-// Clamps to 0..1; NaN becomes 0.
-HF_INLINE vf coc_saturate(vf v)
-{
-    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
-}
-
 HF_INLINE vf coc_shape(vf t)
 {
     return vf_mul(vf_mul(t, t), vf_sub(vf_set1(3), vf_mul(vf_set1(2), t)));
@@ -77,7 +71,7 @@ HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form for
 // The CoC from 0 to 1, linear or smoothstep.
 HF_INLINE vf coc_ramp(const struct hf_setup *s, vf t)
 {
-    t = coc_saturate(t);
+    t = vf_saturate(t);
     return s->smoothstep ? coc_shape(t) : t;
 }
 

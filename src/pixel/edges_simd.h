@@ -25,7 +25,7 @@ static void edges_sure_simd(const float *const radius[3], int n, float *sure, fl
         const vf most = vf_max(vf_max(vf_back(high[0], high[1]), high[1]), vf_align(high[1], high[2], 1));
         const vf apart = vf_sub(most, least), from = vf_set1(HF_EDGES_FROM), one = vf_set1(1);
         const vf mixed = vf_mul(vf_sub(apart, from), vf_set1(HF_EDGES_GROWS));
-        vf_store(sure + x, vf_sub(one, vf_min(vf_max(mixed, vf_zero()), one)));
+        vf_store(sure + x, vf_sub(one, vf_saturate(mixed)));
         vf_store(slope + x, vf_div(vf_set1(HF_EDGES_SIDES), vf_max(apart, from)));
         vf_store(middle + x, vf_mul(vf_add(least, most), vf_set1(0.5f)));
         for (int i = 0; i < 2; i++) {
@@ -35,14 +35,9 @@ static void edges_sure_simd(const float *const radius[3], int n, float *sure, fl
     }
 }
 
-HF_INLINE vf edges_unit(vf v)
-{
-    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
-}
-
 HF_INLINE vf edges_front(vf middle, vf slope, vf r)
 {
-    return edges_unit(vf_add(vf_mul(vf_sub(middle, r), slope), vf_set1(0.5f)));
+    return vf_saturate(vf_add(vf_mul(vf_sub(middle, r), slope), vf_set1(0.5f)));
 }
 
 // For column i of the 5 x 5, on both sides: sums of weights, of weighted radii, and of weighted colours.
@@ -132,7 +127,7 @@ HF_INLINE void edges_take_vector(const struct hf_edge_row *row, int x, const int
     for (int c = 0; c < channels; c++)
         v[c] = vf_mul(vf_load(row->colour[2][c] + x), scale);
     const vf mixed = vf_sub(one, sure), given = edges_share(v, mean, a0);
-    const vf of_front = edges_unit(vf_mul(vf_sub(given, noise), vf_set1(1 / (1 - 2 * HF_EDGES_NOISE))));
+    const vf of_front = vf_saturate(vf_mul(vf_sub(given, noise), vf_set1(1 / (1 - 2 * HF_EDGES_NOISE))));
     const vf parts = vf_mul(vf_mul(mixed, vf_sub(one, of_front)), vf_set1(HF_EDGES_PARTS));
     const vf share = vf_mul(vi_to_vf(vf_to_vi(parts)), vf_set1(1.0f / HF_EDGES_PARTS));
     const vf a = vf_sub(one, vf_div(share, mixed)), seen = vf_add(sure, vf_mul(mixed, of_front));

@@ -47,7 +47,7 @@ HF_INLINE vf unorm_decode(vi code, const int bits, const int srgb)
 HF_INLINE vi unorm_encode(vf in, const int bits, const int srgb, vi *clamped)
 {
     static const float p[8] = HF_SRGB_ENCODE;
-    vf v = vf_min(vf_max(in, vf_zero()), vf_set1(1));
+    vf v = vf_saturate(in);
     *clamped = vi_count(*clamped, vf_ne(v, in));
     if (srgb) {
         const vf q = vf_sqrt(vf_sqrt(v));

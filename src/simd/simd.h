@@ -61,6 +61,12 @@ HF_INLINE vf vf_once(vf a)
         }                                                                                                              \
     } while (0)
 
+// v clamped to 0..1; NaN becomes 0.
+HF_INLINE vf vf_saturate(vf v)
+{
+    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
+}
+
 // v clamped to the range between a and b, in either order.
 HF_INLINE vf vf_between(vf v, vf a, vf b)
 {

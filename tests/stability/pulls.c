@@ -190,7 +190,7 @@ static void found_before(const struct run *r)
         {RANGE_RADIUS, STAGE_LAMPS, 2, 0.9814, 0.98141},
         // layers, 9.6 codes: the front of a mixed pixel, whose last sure pixel went, leaned on a lamp.
         {RANGE_DISTANCE, STAGE_LAMPS, 1, 6.0798, 6.0799},
-        // layers, 3.1 codes: the last sure pixels of a card went at one rate, and then their mean.
+        // layers, 3.1 codes: the weight of a card's last sure pixels fell to 0 steeply, and the mean of their side with it.
         {RANGE_DISTANCE, STAGE_CARDS, 5, 9.2014, 9.2015},
     };
     for (size_t k = 0; k < sizeof found / sizeof *found; k++) {

@@ -118,23 +118,18 @@ static double share_of(const struct frame *f, int x, int y, double a0, const dou
     return fmin(trusted, 1 - *behind);
 }
 
-static double light_at(const struct frame *f, int x, int y)
-{
-    return fabs(colour_at(f, 0, x, y)) + fabs(colour_at(f, 1, x, y)) + fabs(colour_at(f, 2, x, y));
-}
-
 // How far a mixed pixel belongs to a small lamp behind the edge: one and a half times to twice as bright as either
 // side, with fewer than six to seven pixels that have a quarter to a half of its excess.
 static double lamp_of(const struct frame *f, int x, int y, double mean[2][5])
 {
     double most = 0, count = 0;
-    const double own = light_at(f, x, y), wider = fabs(mean[1][4]) - fabs(mean[0][4]);
+    const double own = light_of(f, x, y), wider = fabs(mean[1][4]) - fabs(mean[0][4]);
     for (int i = 0; i < 2; i++)
         most = fmax(most, fabs(mean[i][0]) + fabs(mean[i][1]) + fabs(mean[i][2]));
     if (own <= 1.5 * most || wider <= 0)
         return 0;
     for (int i = 0; i < 49; i++) {
-        const double over = light_at(f, x + i % 7 - 3, y + i / 7 - 3) - most;
+        const double over = light_of(f, x + i % 7 - 3, y + i / 7 - 3) - most;
         count += fmin(fmax(4 * over / (own - most) - 1, 0), 1);
     }
     const double bright = most > 0 ? fmin(2 * (own / most - 1.5), 1) : 1;

@@ -126,7 +126,7 @@ static void sample_taps_simd(const struct hf_frame *f, struct hf_rect r, const s
     for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = r.x0; x < r.x1; x += VF_N) {
             // Lanes past the row's end hold anything; within 0..1 they read nothing but the buffers.
-            const vf scale = coc_saturate(vf_load(hf_at(&f->buf[HF_BUF_COC4], 1, x, y)));
+            const vf scale = vf_saturate(vf_load(hf_at(&f->buf[HF_BUF_COC4], 1, x, y)));
             vf total[5] = {vf_zero(), vf_zero(), vf_zero(), vf_zero(), vf_zero()}, sum[5];
             for (int i = 0; i < t->count; i++) {
                 if (i % 8 == 0)

@@ -102,7 +102,7 @@ HF_INLINE vf fill_counts(const struct hf_setup *s, vf own, vf g)
     const vf apart = vf_mul(vf_set1(4), vf_abs(vf_sub(own, g)));
     if (hf_chapter(s)->faithful)
         return vf_keep(vf_le(apart, one), one);
-    return vf_mul(vf_min(begins, one), coc_saturate(vf_sub(vf_set1(2), apart)));
+    return vf_mul(vf_min(begins, one), vf_saturate(vf_sub(vf_set1(2), apart)));
 }
 
 // All nine looked at, for a maximum ...

@@ -8,7 +8,7 @@ HF_INLINE vf area_reached(const struct hf_levels *l, int i, vf coc)
         return vf_zero();
     if (i == l->count - 1)
         return vf_set1(1);
-    return coc_saturate(vf_mul(vf_sub(coc, vf_set1(l->level[i + 1].coc)), vf_set1(l->level[i].to_next)));
+    return vf_saturate(vf_mul(vf_sub(coc, vf_set1(l->level[i + 1].coc)), vf_set1(l->level[i].to_next)));
 }
 
 HF_INLINE vf area_share(const struct hf_levels *l, int i, vf coc)
@@ -20,7 +20,7 @@ HF_INLINE vf area_of_level(const struct hf_levels *l, int i, vf area)
 {
     if (i < 0 || i == l->count - 1)
         return vf_set1(i >= 0);
-    return coc_saturate(vf_mul(vf_sub(area, vf_set1(l->level[i + 1].area)), vf_set1(l->level[i].area_to_next)));
+    return vf_saturate(vf_mul(vf_sub(area, vf_set1(l->level[i + 1].area)), vf_set1(l->level[i].area_to_next)));
 }
 
 HF_INLINE vf area_spread(const struct hf_levels *l, int i, vf coc)

@@ -97,7 +97,7 @@ HF_INLINE void hex_near_2(const struct hf_frame *f, struct hf_rect b, const int 
 HF_INLINE vf hex_own(vf found, vf p)
 {
     const vf least = vf_sub(vf_set1(HEXAGON_LEAST), found);
-    vf o = vf_mul(vf_sub(vf_set1(1), found), coc_saturate(vf_sub(vf_set1(HEXAGON_ALL), p)));
+    vf o = vf_mul(vf_sub(vf_set1(1), found), vf_saturate(vf_sub(vf_set1(HEXAGON_ALL), p)));
     o = vf_max(o, least);
     return vf_max(o, vf_zero());
 }

@@ -89,7 +89,7 @@ HF_INLINE void hex_load_seen(const struct hf_frame *f, int x, int y, const vf ra
 {
     vf w[4];
     for (int t = 0; t < 4; t++)
-        w[t] = coc_saturate(vf_add(vf_set1(1.5f), radius[t]));
+        w[t] = vf_saturate(vf_add(vf_set1(1.5f), radius[t]));
     const vf sum = vf_add(vf_add(w[0], w[1]), vf_add(w[2], w[3])), quarter = vf_set1(0.25f);
     vf v[4];
     vf_store(hf_at(&f->buf[HF_HEXAGON_SEEN_WEIGHT_2], 0, x, y), vf_mul(sum, quarter));
@@ -210,7 +210,7 @@ HF_INLINE vf hex_background(const struct hex_behind *v, int c, vf near, vf cover
     const vf front = vf_select(vf_gt(coverage, zero), vf_div(near, coverage), own);
     const vf some = vf_lerp(vf_div(v->colour[c], v->weight), front, vf_div(nothing, vf_add(v->weight, nothing)));
     const vf seen = vf_select(vf_gt(v->weight, zero), some, front);
-    return vf_lerp(seen, own, coc_saturate(vf_add(vf_set1(HEXAGON_ALL), p)));
+    return vf_lerp(seen, own, vf_saturate(vf_add(vf_set1(HEXAGON_ALL), p)));
 }
 
 // The colour of a far pixel. In a mixed pixel only its far part is replaced.
@@ -307,11 +307,11 @@ HF_INLINE void hex_composite_half(const struct hf_frame *f, struct hf_rect r, in
             a = hex_bilinear(coverage, 0, x0 + x, corner, w);
         for (int i = 0; i < 4; i++) {
             const vf q = vf_load(hf_at(&f->buf[HF_HEXAGON_FAR_WEIGHT_2], 1, x0 + x + corner[i].x, corner[i].y));
-            far_w[i] = vf_mul(w[i], coc_saturate(q));
+            far_w[i] = vf_mul(w[i], vf_saturate(q));
             far_sum = vf_add(far_sum, far_w[i]);
         }
         const vf left = f->near ? hex_left_over(f->s, a, p, 2 * (x0 + x) + odd, 2, y) : vf_zero();
-        const vf all = vf_add(a, left), blend = coc_saturate(vf_mul(vf_set1(0.5f), p));
+        const vf all = vf_add(a, left), blend = vf_saturate(vf_mul(vf_set1(0.5f), p));
         const vm is_near = vf_ne(a, vf_zero()), is_far = vm_and(vf_gt(p, vf_zero()), vf_gt(far_sum, vf_zero()));
         const vm covers = vf_lt(p, vf_zero());
         const int any = f->near && vm_any(covers);

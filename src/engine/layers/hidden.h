@@ -93,8 +93,9 @@ struct hf_hidden_line {
 // The radius of a place without a sample: before anything else.
 #define HF_LAYERS_NOTHING (-1e30f)
 
-// A pixel whose back is less than 1 / EDGE of it counts partly as its front for others. How much falls smoothly to 0, or the
-// pixel's radius would move 4,096 times as fast as its back grows, not 700 times.
+// A pixel whose back is less than 1 / EDGE of it counts partly as its front for others. The front's weight falls smoothly to 0
+// as the back grows, so the pixel's radius moves at most 700 times as fast as the back's part; were it a straight line, 4,096
+// times.
 #define HF_LAYERS_EDGE 64
 
 // A front that is less than 1 / THIN of its pixel comes nearer to its back the less it is, where the nearest surface of a

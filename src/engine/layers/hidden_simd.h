@@ -132,7 +132,7 @@ static void layers_merge_simd(const float *const in[3][6], int channels, float s
 
 HF_INLINE vf layers_hides(vf more)
 {
-    return vf_min(vf_max(vf_add(more, more), vf_zero()), vf_set1(1));
+    return vf_saturate(vf_add(more, more));
 }
 
 HF_INLINE void layers_taps_of(const struct hf_hidden_tap *tap, int count, const int channels, const float *nearest,
@@ -184,10 +184,10 @@ HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, const i
         const ptrdiff_t at = line->side[side][i] + x;
         const vf r = vf_load(line->in[5] + at), behind = vf_sub(r, nearest), off = vf_set1(1 - line->away[i]);
         const vf hides = layers_hides(vf_sub(behind, vf_set1(1)));
-        const vf sees = vf_mul(hides, coc_saturate(vf_fma(behind, vf_set1(1.0f / 3), off)));
+        const vf sees = vf_mul(hides, vf_saturate(vf_fma(behind, vf_set1(1.0f / 3), off)));
         if (!vm_any(vf_gt(sees, vf_zero())))
             continue;
-        const vf part = vf_mul(open, vf_mul(coc_saturate(vf_mul(vf_set1(9), vf_load(line->in[4] + at))), sees));
+        const vf part = vf_mul(open, vf_mul(vf_saturate(vf_mul(vf_set1(9), vf_load(line->in[4] + at))), sees));
         open = vf_sub(open, part);
         whole = vf_add(whole, part);
         for (int c = 0; c < channels; c++)
@@ -217,7 +217,7 @@ HF_INLINE void layers_between_of(const struct hf_hidden_line *line, const int ch
         const vf near = vf_min(t[0], t[1]), square = vf_mul(near, near), fourth = vf_mul(square, square);
         const vf behind = vf_sub(vf_mul(vf_add(r[0], r[1]), vf_set1(0.5f)), from);
         const vf unlike = vf_mul(vf_abs(vf_sub(r[0], r[1])), vf_set1(HF_LAYERS_UNLIKE));
-        const vf alike = coc_saturate(vf_sub(vf_set1(2), vf_div(unlike, vf_max(behind, one))));
+        const vf alike = vf_saturate(vf_sub(vf_set1(2), vf_div(unlike, vf_max(behind, one))));
         const vf both = vf_mul(vf_mul(whole[0], whole[1]), alike);
         const vf v = vf_div(vf_mul(both, vf_set1(HF_LAYERS_BETWEEN)), vf_mul(fourth, fourth));
         const vm some = vf_gt(v, vf_set1(HF_LAYERS_SOME));
@@ -292,7 +292,7 @@ static void layers_found_simd(const float *const sum[7], const float *const radi
         }
         vf_unzip(before[0], before[1], &even, &odd);
         const vf all = vf_mul(vf_add(even, odd), vf_set1(0.25f));
-        vf_store(out[4] + x, vf_keep(some, vf_mul(all, coc_saturate(vf_load(sum[6] + x)))));
+        vf_store(out[4] + x, vf_keep(some, vf_mul(all, vf_saturate(vf_load(sum[6] + x)))));
         vf_store(out[5] + x, r);
         for (int c = 0; c < channels; c++)
             vf_store(out[c] + x, vf_mul(vf_load(sum[c] + x), inverse));
@@ -335,8 +335,8 @@ HF_INLINE vf layers_lonely(vf r, vf like, vf others, vf size)
     const vf one = vf_set1(1), sharp = vf_set1(HF_LAYERS_SHARP), all = vf_add(like, others);
     const vf part = vf_sub(vf_select(vf_gt(all, vf_zero()), vf_div(like, all), one), vf_set1(HF_LAYERS_ALONE));
     const vf around = vf_select(vf_gt(others, vf_zero()), vf_div(size, others), sharp);
-    const vf alone = vf_sub(one, coc_saturate(vf_mul(part, vf_set1(HF_LAYERS_COMPANY))));
-    return vf_mul(alone, coc_saturate(vf_sub(sharp, vf_min(vf_abs(r), around))));
+    const vf alone = vf_sub(one, vf_saturate(vf_mul(part, vf_set1(HF_LAYERS_COMPANY))));
+    return vf_mul(alone, vf_saturate(vf_sub(sharp, vf_min(vf_abs(r), around))));
 }
 
 HF_INLINE vf layers_roots_of(const float *const in[6], int x)
@@ -350,7 +350,7 @@ HF_INLINE vf layers_in_line(const float *weight, const float *radius, vf r, int 
 {
     const vf w = vf_load(weight);
     const vm some = vf_gt(w, vf_zero());
-    const vf far = vf_keep(some, vf_load(radius)), whole = coc_saturate(vf_mul(vf_set1(HF_LAYERS_WHOLE), w));
+    const vf far = vf_keep(some, vf_load(radius)), whole = vf_saturate(vf_mul(vf_set1(HF_LAYERS_WHOLE), w));
     const vf line = vf_keep(some, vf_mul(vf_set1(hf_layers_line(i)), whole));
     const vf alike = vf_fnma(vf_abs(vf_sub(far, r)), vf_set1(1.0f / HF_LAYERS_ALIKE), vf_set1(1));
     *of = vf_mul(line, vf_max(alike, vf_zero()));

@@ -12,7 +12,7 @@ HF_INLINE void layers_alike_of(const struct hf_pattern_place *place, const struc
         for (int i = 0; i < count; i++) {
             const ptrdiff_t at = tap[i].at + x;
             const vf apart = vf_abs(vf_sub(vf_load(in[5] + at), middle));
-            const vf t = vf_min(vf_max(vf_fnma(apart, slope, vf_set1(2)), zero), one);
+            const vf t = vf_saturate(vf_fnma(apart, slope, vf_set1(2)));
             const vf full = vf_min(vf_mul(vf_set1(9), vf_load(in[4] + at)), one);
             const vf k = vf_mul(vf_mul(t, full), vf_set1(tap[i].weight));
             vf d = zero;

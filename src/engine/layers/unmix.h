@@ -6,7 +6,7 @@
 #include "engine/layers/kernels.h"
 
 // Which pixels are mixed: pixel/edges.h. In the means of both sides a pixel counts by the square of how surely it is not
-// mixed: where the last sure pixel of a thin thing goes, its weight goes slowly.
+// mixed, so the weight of a thin thing's last sure pixels falls to 0 gently.
 // FAINT: un-mixing fades out as the weight of both sides falls below this.
 // LEAN: where one side has less than this share of that weight, its mean leans on those of its pixels whose colours are
 // farthest from the other side's mean. On a slope that is barely mixed, weights change ten times as fast as radii. FAINT

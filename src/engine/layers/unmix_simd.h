@@ -17,7 +17,7 @@ HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channe
 HF_INLINE vf layers_front(vf middle, vf slope, vf r)
 {
     const vf s = vf_fma(vf_sub(middle, r), slope, vf_set1(0.5f));
-    return vf_min(vf_max(s, vf_zero()), vf_set1(1));
+    return vf_saturate(s);
 }
 
 // An eighth of a colour's brightness, which is finite even for the largest samples.
@@ -76,7 +76,7 @@ static __attribute__((noinline)) void layers_farthest(const struct hf_unmix_row 
     for (int k = 0; k < 25; k++) {
         const int y = 1 + k / 5, at = x - 2 + k % 5;
         const vf s = vf_add(vf_mul(vf_sub(middle, vf_load(u->radius[y] + at)), slope), vf_set1(0.5f));
-        const vf of_front = vf_min(vf_max(s, vf_zero()), one);
+        const vf of_front = vf_saturate(s);
         vf d = vf_zero();
         const vf dimmed = vf_mul(of_front, layers_dimmed(vf_load(u->light[y] + at), plain));
         share[k] = vf_select(front, dimmed, vf_sub(one, of_front));
@@ -178,12 +178,6 @@ HF_INLINE vf layers_rest(const struct hf_unmix_row *u, int x, int c, vf a, vf me
     return vf_fnma(vf_sub(vf_set1(1), a), mean[1][c], vf_fnma(a, mean[0][c], vf_load(u->colour[3][c] + x)));
 }
 
-// 0 to 1; 0 for NaN.
-HF_INLINE vf layers_unit(vf v)
-{
-    return vf_min(vf_max(v, vf_zero()), vf_set1(1));
-}
-
 HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channels, vf a0, vf mean[2][5],
                           const vf spread[2], vf *behind)
 {
@@ -207,7 +201,7 @@ HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channel
     a = vf_select(vf_le(zero, trust), vf_fma(vf_sub(a, a0), trust, a0), a0);
     const vf unexplained = vf_mul(vf_div(off, apart), vf_set1(HF_UNMIX_UNEXPLAINED));
     const vf differ = vf_sub(vf_mul(vf_div(apart, size), vf_set1(HF_UNMIX_ALIKE)), one);
-    const vf part = vf_mul(layers_unit(unexplained), layers_unit(differ));
+    const vf part = vf_mul(vf_saturate(unexplained), vf_saturate(differ));
     *behind = vf_keep(vf_gt(apart, zero), vf_mul(part, vf_mul(b0, vf_set1(HF_UNMIX_HALF))));
     return vf_min(a, vf_sub(one, *behind));
 }

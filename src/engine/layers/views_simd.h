@@ -9,7 +9,7 @@ HF_INLINE vf layers_eye(const struct hf_view_eye *e, int v, int x)
 {
     const vf dx = vf_sub(vf_set1(e->point[v][0]), vf_load(e->x + x)), dy = vf_set1(e->point[v][1] - e->y);
     const vf inside = vf_sub(vf_set1(1), vf_sqrt(vf_fma(dx, dx, vf_mul(dy, dy))));
-    return vf_min(vf_max(vf_fma(inside, vf_set1(e->sharp), vf_set1(e->point[v][2])), vf_zero()), vf_set1(1));
+    return vf_saturate(vf_fma(inside, vf_set1(e->sharp), vf_set1(e->point[v][2])));
 }
 
 // What a row of pixels sees of planes `from` to `end` in one view. `side` vectors side by side hide each other's latency:

@@ -16,8 +16,8 @@ static int seen_weights_simd(const struct hf_scatter *t, const float *radius, co
         vf_zip(quad, quad, &wide[0], &wide[1]);
         for (int k = 0; k < 2; k++) {
             const vf r = vf_load(radius + x + k * VF_N);
-            const vf nearer = coc_saturate(vf_add(wide[k], r)), hardly = coc_saturate(vf_add(vf_set1(1.5f), r));
-            const vf fade = coc_saturate(vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope)));
+            const vf nearer = vf_saturate(vf_add(wide[k], r)), hardly = vf_saturate(vf_add(vf_set1(1.5f), r));
+            const vf fade = vf_saturate(vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope)));
             const vm is_far = vf_gt(r, zero);
             const vf own = vf_select(is_far, fade, vf_max(nearer, hardly)), sharp = vf_mul(quarter, own);
             const vf far = vf_keep(is_far, vf_mul(quarter, vf_sub(vf_set1(1), own)));
@@ -44,10 +44,10 @@ static void behind_blend_simd(const struct hf_scatter_row *row, const float *con
             far_weight = vf_load(row->far_weight + i);
             far = scatter_field_colour(t, mine, vf_load(row->far + i), far_weight);
         }
-        const vf reached = coc_saturate(vf_mul(vf_set1(16), far_weight));
+        const vf reached = vf_saturate(vf_mul(vf_set1(16), far_weight));
         const vf sharp = vf_load(weight[0] + i), blurred = vf_load(weight[1] + i), both = vf_add(sharp, blurred);
         const vf v = scatter_mix(front, far, reached);
-        const vf trusted = coc_saturate(far_weight);
+        const vf trusted = vf_saturate(far_weight);
         vf seen =
             vf_select(vf_gt(blurred, zero), scatter_mix(vf_div(vf_load(colour[1] + i), blurred), far, trusted), v);
         seen = vf_select(vf_gt(sharp, zero),

@@ -59,7 +59,7 @@ HF_INLINE vf scatter_mix(vf a, vf b, vf t)
 HF_INLINE vf scatter_field_colour(const struct hf_scatter *t, vf own, vf sum, vf weight)
 {
     const vf part = vf_mul(weight, vf_set1(t->trust));
-    const vf v = scatter_mix(own, vf_div(sum, weight), vf_min(vf_max(part, vf_zero()), vf_set1(1)));
+    const vf v = scatter_mix(own, vf_div(sum, weight), vf_saturate(part));
     return vf_select(vf_gt(weight, vf_zero()), v, own);
 }
 
@@ -90,7 +90,7 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
         const vf bright = vf_load(out + x), own = vf_mul(bright, vf_set1(t->dim));
         const vf r = vf_load(row->radius + x), size = vf_abs(r);
         const vf fade = vf_mul(vf_sub(vf_set1(t->fade), size), vf_set1(t->fade_slope));
-        const vf show = vf_min(vf_max(fade, zero), one);
+        const vf show = vf_saturate(fade);
         vf v = own, far = zero, near = zero, front = own;
         if (row->far) {
             far = vf_load(row->far_weight + x);
@@ -110,8 +110,7 @@ static void scatter_blend_simd(const struct hf_scatter_row *row, float *out)
             back = vf_select(is_near, vf_select(vf_lt(show, left), vf_div(show, left), one), show);
         }
         const vf reached = vf_mul(vf_set1(16), far);
-        const vf hidden =
-            row->behind ? vf_load(row->behind + x) : scatter_mix(front, v, vf_min(vf_max(reached, zero), one));
+        const vf hidden = row->behind ? vf_load(row->behind + x) : scatter_mix(front, v, vf_saturate(reached));
         v = vf_select(is_near, hidden, v);
         v = scatter_mix(own, v, vf_sub(one, back));
         if (row->near)

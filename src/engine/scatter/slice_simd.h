@@ -8,7 +8,7 @@
 // How far r has gone from edge[0] to edge[1], 0 to 1.
 HF_INLINE vf slice_past(const float edge[2], vf r)
 {
-    return coc_saturate(vf_div(vf_sub(r, vf_set1(edge[0])), vf_set1(edge[1] - edge[0])));
+    return vf_saturate(vf_div(vf_sub(r, vf_set1(edge[0])), vf_set1(edge[1] - edge[0])));
 }
 
 static void slice_row_simd(const struct hf_scatter_slice *s, float sign, const float *radius, int channels, int n,
@@ -29,7 +29,7 @@ static void slice_row_simd(const struct hf_scatter_slice *s, float sign, const f
 // The part of pixels of that radius which sprites can cover.
 HF_INLINE vf slice_room(const struct hf_scatter *t, vf radius)
 {
-    const vf own = coc_saturate(vf_mul(vf_sub(vf_set1(t->fade), vf_abs(radius)), vf_set1(t->fade_slope)));
+    const vf own = vf_saturate(vf_mul(vf_sub(vf_set1(t->fade), vf_abs(radius)), vf_set1(t->fade_slope)));
     return vf_sub(vf_set1(1), own);
 }
 

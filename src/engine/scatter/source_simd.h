@@ -14,8 +14,8 @@ static void source_weights_simd(const struct hf_scatter *t, float sign, const fl
         const vf r = vf_mul(vf_set1(sign), vf_load(radius + i));
         const vf half = vf_mul(vf_sub(r, vf_set1(t->half_from)), vf_set1(t->half_slope));
         const vf own = vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope));
-        const vf blurred = vf_sub(one, vf_min(vf_max(own, zero), one));
-        const vf weight = vf_mul(vf_keep(vf_gt(r, zero), blurred), vf_sub(one, vf_min(vf_max(half, zero), one)));
+        const vf blurred = vf_sub(one, vf_saturate(own));
+        const vf weight = vf_mul(vf_keep(vf_gt(r, zero), blurred), vf_sub(one, vf_saturate(half)));
         const vf dim = vf_mul(weight, vf_set1(t->dim));
         vf_store(out[3] + i, weight);
         for (int c = 0; c < channels; c++)

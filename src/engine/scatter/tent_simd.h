@@ -7,8 +7,8 @@
 
 HF_INLINE vf tent_half_weight(const struct hf_scatter *t, vf r)
 {
-    const vf part = coc_saturate(vf_mul(vf_sub(r, vf_set1(t->half_from)), vf_set1(t->half_slope)));
-    const vf own = coc_saturate(vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope)));
+    const vf part = vf_saturate(vf_mul(vf_sub(r, vf_set1(t->half_from)), vf_set1(t->half_slope)));
+    const vf own = vf_saturate(vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope)));
     return vf_mul(vf_keep(vf_gt(r, vf_zero()), vf_sub(vf_set1(1), own)), part);
 }
 
@@ -59,7 +59,7 @@ HF_INLINE vf tent_apart(const float *site, int i, int next, vf r)
 HF_INLINE vf tent_alike(vf r, vf apart)
 {
     const vf most = vf_add(vf_set1(0.25f), vf_mul(r, vf_set1(1 / 32.0f))), steps = vf_set1(1 << HF_ALIKE_LOG2);
-    const vf part = vf_mul(coc_saturate(vf_mul(vf_sub(most, apart), vf_set1(8))), steps);
+    const vf part = vf_mul(vf_saturate(vf_mul(vf_sub(most, apart), vf_set1(8))), steps);
     return vf_mul(vi_to_vf(vf_to_vi(part)), vf_set1(1.0f / (1 << HF_ALIKE_LOG2)));
 }
 
