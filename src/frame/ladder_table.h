@@ -5,22 +5,22 @@
 // average; on no scene where both may be chosen does it err by 0.1 dB more. Those of the gaussian engine are for blur
 // no wider than theirs; for a lens the list begins below them.
 // clang-format off
-#define HF_LADDER_MEASURED "2026-11-26, AMD EPYC, avx512, 2 threads"
+#define HF_LADDER_MEASURED "2026-11-27, AMD EPYC, avx512, 2 threads"
 // The command's words; display-encoded root mean square error, geometric mean of the scenes and of the worst;
 // milliseconds of a megapixel; the parameters that the words stand for.
 #define HF_LADDER_STEPS \
-    {"--engine gaussian --resolution quarter --iterations 4", 0.058137f, 0.078830f, 1.515f, \
+    {"--engine gaussian --resolution quarter --iterations 4", 0.058137f, 0.078830f, 1.550f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_GAUSSIAN, .hexagon.resolution = 2, .scatter.resolution = 2, .gaussian.resolution = 2, .gaussian.iterations = 4}}, \
-    {"--engine gather", 0.033948f, 0.069395f, 19.32f, \
+    {"--engine gather", 0.033948f, 0.069395f, 17.98f, \
      {HF_PARAMS_DEFAULTS}}, \
-    {"--engine layers", 0.021534f, 0.027193f, 46.38f, \
+    {"--engine layers --spacing 8 --no-unmix --no-highlights", 0.029242f, 0.064780f, 32.23f, \
+     {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.spacing = 8, .layers.no_unmix = 1, .layers.no_highlights = 1}}, \
+    {"--engine layers", 0.021534f, 0.027190f, 47.14f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS}}, \
-    {"--engine layers --layers-quality best --lens-points 1", 0.020777f, 0.027436f, 86.30f, \
-     {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3, .layers.lens_points = 1}}, \
-    {"--engine layers --layers-quality best", 0.020353f, 0.027356f, 224.4f, \
+    {"--engine layers --layers-quality best", 0.020354f, 0.027356f, 182.3f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3}}
 // steps of draft, standard, high and best
-#define HF_LADDER_QUALITIES 1, 2, 4, 4
+#define HF_LADDER_QUALITIES 1, 3, 4, 4
 // milliseconds per megapixel of each engine with its default settings
-#define HF_LADDER_ENGINES 19.32f, 44.43f, 98.66f, 3.081f, 46.38f, 11.96f
+#define HF_LADDER_ENGINES 17.98f, 39.37f, 87.36f, 2.957f, 47.14f, 10.71f
 // clang-format on
