@@ -250,7 +250,7 @@ static void near_bar(struct hf_context *c)
 }
 
 // What is hidden behind a near bar continues what is visible nearest to its edge: here 8 columns of black, then white.
-// In the half disc of radius 30 beyond the edge, 8 columns are a third of the area; weighted by the inverse fourth power
+// In the half disc of radius 30 beyond the edge, 8 columns are a third of the area; weighted by the inverse eighth power
 // of the distance they are almost all.
 static void nearest_behind(struct hf_context *c)
 {
@@ -296,6 +296,32 @@ static void flat_highlight(struct hf_context *c)
             }
         }
     CHECK_MSG(most - least <= most * 50 * 6e-8f, "a highlight is %g and %g inside", (double)least, (double)most);
+    struct picture *const made[] = {&colour, &radii, &out};
+    for (int i = 0; i < 3; i++)
+        picture_free(made[i]);
+}
+
+// A light of 3 x 3 pixels of radius 16, in quads of which it fills a part, before a black wall of radius 40. Its disc is its
+// own: the kernel around 16 ends at 16.4 pixels, the light 1.5 beside its middle, and the lattice and upsampling reach 2
+// each. With the wall's radius the quads at its rim reached 40.
+static void disc_before_wall(struct hf_context *c)
+{
+    enum { X = WIDTH / 2 + 1, REACH = 22 };
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    picture_fill(&radii, 0, 40);
+    for (int k = 0; k < 9; k++) {
+        const int at = (MIDDLE + k / 3) * WIDTH + X - 1 + k % 3;
+        radii.plane[0][at] = 16;
+        colour.plane[1][at] = 1000;
+    }
+    struct picture out = at_radius(c, &colour, &radii, HF_DERIVE);
+    double inside = 0, outside = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const int x = i % WIDTH - X, y = i / WIDTH - MIDDLE - 1;
+        *(x * x + y * y <= REACH * REACH ? &inside : &outside) += out.plane[1][i];
+    }
+    CHECK_MSG(inside > 0 && outside <= 1e-6 * inside, "of a light's disc %g lies inside of it, %g outside", inside,
+              outside);
     struct picture *const made[] = {&colour, &radii, &out};
     for (int i = 0; i < 3; i++)
         picture_free(made[i]);
@@ -385,14 +411,15 @@ int main(int argc, char **argv)
     near_bar(c);
     nearest_behind(c);
     flat_highlight(c);
+    disc_before_wall(c);
     no_speck(c);
     no_ring(c);
     bar_at_border(c, HF_DERIVE);
     bar_at_border(c, 24);
     if (argc > 1) {
-        truth(c, argv[1], "lights", 5, 0.37f, 23.17);
-        truth(c, argv[1], "fence", 6, 0.46f, 31.85);
-        truth(c, argv[1], "foliage", 4, 0.7f, 33.12);
+        truth(c, argv[1], "lights", 5, 0.37f, 26.00);
+        truth(c, argv[1], "fence", 6, 0.46f, 32.67);
+        truth(c, argv[1], "foliage", 4, 0.7f, 33.26);
     }
     hf_close(&c);
     return check_report();

@@ -226,7 +226,7 @@ static double area_far_bound(const struct world *w, int c, int x, int y)
             for (int u = x - k->rx; u <= x + k->rx; u++) {
                 const double part = hf_area_part(kernel, u - x, u - x + 1, v - y, v - y + 1);
                 const double reach =
-                    simple ? 1 : hf_level_spread(l, i, reference_at(w, HF_BUF_COC4, HF_AREA_FAR_MOST, u, v));
+                    simple ? 1 : hf_level_spread(l, i, reference_at(w, HF_BUF_COC4, HF_AREA_FAR_OF_LIGHT, u, v));
                 const double karis = w->gather.fields.karis ? reference_at(w, HF_BUF_WEIGHT, 0, u, v) : 1;
                 sum += part * reach * karis * fabs((double)reference_at(w, HF_BUF_COLORFAR4, c, u, v));
                 weight += part * reach * karis * reference_at(w, HF_BUF_COC4, HF_AREA_FAR, u, v);

@@ -139,6 +139,8 @@ static struct subject per_pixel(void)
 {
     struct subject s = gather("gather per pixel", HF_STORAGE_FLOAT);
     s.params.gather.per_pixel_kernel = 1;
+    // In a quad with several far radii the light decides on one.
+    s.promises = (s.promises & ~(unsigned)ADDS) | ADDS_ONE_RADIUS;
     return s;
 }
 

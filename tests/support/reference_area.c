@@ -7,9 +7,9 @@
 
 #include "support/reference.h"
 
-// Half-resolution planes, interleaved by pixel: colour, its near and far parts, the sizes of these parts, and the
-// largest near and far CoC.
-enum { COLOUR, NEAR = 4, FAR = 8, NEAR_PART = 12, FAR_PART, NEAR_MOST, FAR_MOST, PLANES };
+// Half-resolution planes, interleaved by pixel: colour, its near and far parts, the sizes of these parts, the largest near
+// CoC, and the mean far CoC of the light.
+enum { COLOUR, NEAR = 4, FAR = 8, NEAR_PART = 12, FAR_PART, NEAR_MOST, FAR_OF_LIGHT, PLANES };
 
 enum { MAX_LEVELS = 64 };
 struct levels {
@@ -95,14 +95,14 @@ static double share(const struct levels *l, int i, double coc)
     return i + 1 < l->count && v > l->coc[i + 1] ? (v - l->coc[i + 1]) / (l->coc[i] - l->coc[i + 1]) : 0;
 }
 
-// What near pixels occlude is averaged over all levels up to theirs, weighted by the inverse of their squared area; of several
-// that is 1 at a radius of 32.
-static double share_behind(const struct levels *l, int i, double coc, double one)
+// What near pixels occlude is averaged over all levels up to theirs. Of several, the nearest count most: each by the sixth power
+// of the pixel's radius over its own.
+static double share_behind(const struct levels *l, int i, double coc, int several)
 {
     double sum = 0;
     for (int k = 0; k <= i; k++)
         sum += share(l, k, coc);
-    return sum * (one * one) / (l->coc[i] * l->coc[i]);
+    return several ? sum * pow(coc / l->coc[i], 6) : sum / (l->coc[i] * l->coc[i]);
 }
 
 // A disc with an area between two levels' is blended from both, so that inside the smaller one it is as bright as it
@@ -140,7 +140,8 @@ static double smallest_part(const struct area *a, int far, double coc)
 static void down(struct area *a)
 {
     const struct ref_buffer *colour = &a->r->buffer[REF_COLOUR], *coc = &a->r->buffer[REF_COC];
-    for (int i = 0; i < a->width * a->height; i++)
+    for (int i = 0; i < a->width * a->height; i++) {
+        double all = 0, of_light = 0;
         for (int k = 0; k < 4; k++) {
             const int x = (int)fmin(i % a->width * 2 + k % 2, a->r->width - 1);
             const int y = (int)fmin(i / a->width * 2 + k / 2, a->r->height - 1), at = y * a->r->width + x;
@@ -153,8 +154,13 @@ static void down(struct area *a)
             a->plane[NEAR_PART][i] += near / 4;
             a->plane[FAR_PART][i] += far / 4;
             a->plane[NEAR_MOST][i] = fmax(a->plane[NEAR_MOST][i], coc->data[0][at]);
-            a->plane[FAR_MOST][i] = fmax(a->plane[FAR_MOST][i], coc->data[1][at]);
+            const double brightest = fmax(fmax(colour->data[0][at], colour->data[1][at]), colour->data[2][at]);
+            const double light = far * fmax(brightest, 0x1p-40);
+            all += light;
+            of_light += light * coc->data[1][at];
         }
+        a->plane[FAR_OF_LIGHT][i] = all > 0 ? of_light / all : 0;
+    }
 }
 
 struct sums {
@@ -186,9 +192,10 @@ static struct sums mean(const struct area *a, int x, int y, int i, enum kind kin
             if (kind == KIND_NEAR)
                 w *= share(l, i, a->plane[NEAR_MOST][at]);
             if (kind == KIND_FAR)
-                w *= share_far(l, i, a->plane[FAR_MOST][at]);
-            const double left =
-                kind == KIND_BEHIND && a->r->params.gather.per_pixel_kernel ? left_of(l, i, a->plane[FAR_MOST][at]) : 0;
+                w *= share_far(l, i, a->plane[FAR_OF_LIGHT][at]);
+            const double left = kind == KIND_BEHIND && a->r->params.gather.per_pixel_kernel
+                                    ? left_of(l, i, a->plane[FAR_OF_LIGHT][at])
+                                    : 0;
             const double rest = 1 - a->plane[NEAR_PART][at] - left * a->plane[FAR_PART][at];
             s.left += w * left * a->plane[FAR_PART][at];
             if (kind == KIND_BEHIND && !(rest > 0))
@@ -236,9 +243,9 @@ static void far_pixel(const struct area *a, int x, int y, double *far[4])
     for (int k = 0; k < 9; k++) {
         const int u = x - 1 + k % 3, v = y - 1 + k / 3;
         if (u >= 0 && v >= 0 && u < a->width && v < a->height)
-            coc = fmax(coc, (1 - a->plane[FAR_PART][i]) * a->plane[FAR_MOST][v * a->width + u]);
+            coc = fmax(coc, (1 - a->plane[FAR_PART][i]) * a->plane[FAR_OF_LIGHT][v * a->width + u]);
     }
-    coc = fmax(coc, a->plane[FAR_MOST][i]);
+    coc = fmax(coc, a->plane[FAR_OF_LIGHT][i]);
     for (int own = 0; own < l->count; own++) {
         struct sums all = {{0}, 0, 0};
         const double part = share(l, own, fmax(coc, l->coc[l->count - 1]) * 16 / 9);
@@ -287,9 +294,7 @@ static void near_pixel(const struct area *a, int x, int y, double *near[5])
     }
     for (int k = 0; k < behind->count; k++) {
         const struct sums b = mean(a, x, y, k, KIND_BEHIND);
-        const double full = a->r->reach_y * a->r->kernel_scale,
-                     one = a->r->params.gather.per_pixel_kernel ? 32 / full : 1;
-        const double w = share_behind(behind, k, hides, one);
+        const double w = share_behind(behind, k, hides, a->r->params.gather.per_pixel_kernel);
         for (int c = 0; c < a->r->channels; c++)
             back.colour[c] += w * b.colour[c];
         back.part += w * b.part;

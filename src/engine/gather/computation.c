@@ -136,7 +136,7 @@ static void level_planes(const struct hf_frame *f, struct hf_rect r, enum part p
     for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++)
         for (int x = area.x0; x < area.x1; x++) {
             const float w = karis(f, x, y);
-            const float share = part == PART_FAR ? hf_level_spread(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y))
+            const float share = part == PART_FAR ? hf_level_spread(l, i, *hf_at(coc4, HF_AREA_FAR_OF_LIGHT, x, y))
                                                  : hf_level_share(l, i, *hf_at(coc4, HF_AREA_NEAR_MOST, x, y));
             const float weight = *hf_at(coc4, part == PART_FAR ? HF_AREA_FAR : HF_AREA_NEAR, x, y);
             for (int c = 0; c < f->s->channels; c++)
@@ -157,7 +157,7 @@ static void behind_planes(const struct hf_frame *f, struct hf_rect r, int i)
         for (int x = area.x0; x < area.x1; x++) {
             const float w = karis(f, x, y);
             const float counts = hf_level_limits(f->s, i) ? *hf_at(&f->buf[HF_BUF_WEIGHT], 2, x, y) : 1;
-            const float left = leaves ? hf_level_left(l, i, *hf_at(coc4, HF_AREA_FAR_MOST, x, y)) : 0;
+            const float left = leaves ? hf_level_left(l, i, *hf_at(coc4, HF_AREA_FAR_OF_LIGHT, x, y)) : 0;
             const float far = leaves ? left * *hf_at(coc4, HF_AREA_FAR, x, y) : 0;
             const float rest = (1 - *hf_at(coc4, HF_AREA_NEAR, x, y)) - far;
             const float weight = rest > 0 && in_frame(f->s, x, y) ? rest : 0;
@@ -361,10 +361,10 @@ static void far_simple(const struct hf_frame *f, struct hf_rect r)
 static float far_seen(const struct hf_frame *f, int x, int y)
 {
     const struct hf_buf *coc4 = &f->buf[HF_BUF_COC4];
-    const float own = *hf_at(coc4, HF_AREA_FAR_MOST, x, y), rest = 1 - *hf_at(coc4, HF_AREA_FAR, x, y);
+    const float own = *hf_at(coc4, HF_AREA_FAR_OF_LIGHT, x, y), rest = 1 - *hf_at(coc4, HF_AREA_FAR, x, y);
     float most = 0;
     for (int i = 0; i < 9; i++) {
-        const float v = *hf_at(coc4, HF_AREA_FAR_MOST, x - 1 + i % 3, y - 1 + i / 3);
+        const float v = *hf_at(coc4, HF_AREA_FAR_OF_LIGHT, x - 1 + i % 3, y - 1 + i / 3);
         most = v > most ? v : most;
     }
     return rest * most > own ? rest * most : own;

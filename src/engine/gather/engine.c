@@ -34,7 +34,7 @@ static int channels(const struct hf_setup *s, int b)
     const int levels = !hf_gather_is_simple(s);
     switch (b) {
     case HF_BUF_COC4:
-        return levels ? HF_AREA_FAR_MOST + 1 : HF_AREA_FAR_MOST;
+        return levels ? HF_AREA_FAR_OF_LIGHT + 1 : HF_AREA_FAR_OF_LIGHT;
     case HF_BUF_SUM:
         return levels ? 2 : 0;
     case HF_BUF_WEIGHT:
@@ -256,9 +256,6 @@ struct radii {
     float full[2], largest[2];
 };
 
-// The radius at which a sample that near pixels hide counts once. Where all count less, they fade out.
-#define COUNTS_ONE 32.0f
-
 static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_params *p, const struct radii *r,
                  float most, const struct hf_mem *mem)
 {
@@ -270,9 +267,10 @@ static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_
         err = build_field(g, 1, s, p, r->full[1], r->largest[1], most, mem);
     if (!err)
         err = build_levels(behind, 0, radius, count, r->full[0], s, p, mem);
+    behind->by_distance = g->many;
     for (int i = 0; i < behind->count; i++) {
         struct hf_level *l = &behind->level[i];
-        l->counts = g->many ? COUNTS_ONE * COUNTS_ONE / (radius[i] * radius[i]) : 1 / l->area;
+        l->counts = 1 / (g->many ? l->area * l->area * l->area : l->area);
         l->half_far = 0.5f * r->full[1] / (r->full[0] * l->coc);
     }
     return err;

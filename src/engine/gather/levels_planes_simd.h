@@ -167,7 +167,7 @@ HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect
     hf_row(&f->buf[HF_BUF_LEVEL_WEIGHT], 2, x0, y, weight);
     uint64_t filled = 0;
     for (int x = 0; x < area.x1 - x0; x += VF_N) {
-        const vf most = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR_MOST : HF_AREA_FAR_MOST] + x);
+        const vf most = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR_MOST : HF_AREA_FAR_OF_LIGHT] + x);
         vf share = kind == AREA_NEAR ? area_share(l, i, most) : area_spread(l, i, most);
         if (!vm_any(vm_and(vf_gt(share, vf_zero()), vf_gt(most, vf_zero())))) {
             for (int c = 0; c < s->channels; c++)
@@ -273,7 +273,7 @@ HF_INLINE uint64_t area_behind_row(const struct hf_frame *f, const struct hf_rec
         }
         filled |= convolve_blocks(x0 + x, x0 + x + VF_N);
         if (leaves) {
-            left = area_left(l, i, coc[HF_AREA_FAR_MOST] + x);
+            left = area_left(l, i, coc[HF_AREA_FAR_OF_LIGHT] + x);
             const vf hidden = vf_mul(left, vf_load(coc[HF_AREA_FAR] + x));
             rest = vf_sub(rest, hidden);
             vf_store(weight[2] + x, hidden);

@@ -89,7 +89,9 @@ HF_INLINE uint64_t area_near_row(const struct hf_levels *l, int i, const float *
     const vf weight = vf_set1(l->level[i].counts);
     uint64_t wanted = 0;
     for (int x = 0; x < n; x += VF_N) {
-        const vf v = vf_load(coc + x), part = vf_keep(vf_gt(v, vf_zero()), vf_mul(area_reached(l, i, v), weight));
+        const vf v = vf_load(coc + x), square = vf_mul(v, v);
+        const vf times = l->by_distance ? vf_mul(vf_mul(square, square), square) : vf_set1(1);
+        const vf part = vf_keep(vf_gt(v, vf_zero()), vf_mul(vf_mul(area_reached(l, i, v), times), weight));
         vf_store(share + x, part);
         if (vm_any(vf_gt(part, vf_zero())))
             wanted |= convolve_blocks(x0 + x, x0 + x + VF_N);
@@ -280,7 +282,7 @@ static void area_near_levels(const struct hf_frame *f, struct hf_rect r, int far
 static struct area_span area_seen_row(const struct hf_frame *f, int x0, int n, int y, float *seen)
 {
     struct area_range range = area_range_none();
-    const float *coc = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR_MOST, x0, y);
+    const float *coc = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR_OF_LIGHT, x0, y);
     const float *part = hf_at(&f->buf[HF_BUF_COC4], HF_AREA_FAR, x0, y);
     const ptrdiff_t stride = f->buf[HF_BUF_COC4].stride;
     for (int x = 0; x < n; x += VF_N) {
@@ -366,7 +368,7 @@ static void area_far_levels(const struct hf_frame *f, struct hf_rect r)
     const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
     const struct area_rows rows = area_rows_of(f, r);
     const struct hf_rect around = area_grown(r, &l->level[l->filled].kernel.taps);
-    const struct area_span coc = area_coc_rows(f, &rows, around, HF_AREA_FAR_MOST);
+    const struct area_span coc = area_coc_rows(f, &rows, around, HF_AREA_FAR_OF_LIGHT);
     const struct area_span seen = area_far_begin(f, &rows, r);
     for (int i = l->count - 1; i >= 0 && !hf_stopped(f->s->stop); i--) {
         const struct hf_taps *t = &l->level[i].kernel.taps;
