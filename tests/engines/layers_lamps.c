@@ -127,17 +127,61 @@ static void rim(struct hf_context *c, double light)
     for (int x = AT - 2; x <= AT + 2; x++)
         CHECK_MSG(out.plane[1][TOP * WIDTH + x] <= most, "light %g: %g at %d of the rim, not %g", light,
                   out.plane[1][TOP * WIDTH + x], x, most);
-    // Half of the disc, with a quarter of the light.
+    // Half of the disc, less the row between the rim and the middle of the lamp's quad, with a quarter of the light. Nothing of
+    // the lamp goes on behind the box.
+    const double part = 0.5 - 2 / (PI * RADIUS);
     double sum = 0;
     for (int k = 0; k < WIDTH * TOP; k++)
         sum += k % WIDTH < AT + 2 * RADIUS ? out.plane[1][k] - WALL : 0;
-    CHECK_MSG(sum >= (light - WALL) / 8, "light %g: %g above the rim", light, sum);
+    CHECK_MSG(sum >= (light - WALL) / 4 * part, "light %g: %g above the rim", light, sum);
     for (int x = FROM + 4; x < TO - 4; x++)
         CHECK_MSG(fabs(out.plane[1][TOP * WIDTH + x] - light) <= 0.01 * light, "light %g: %g of the line at %d", light,
                   out.plane[1][TOP * WIDTH + x], x);
     picture_free(&out);
     picture_free(&colour);
     picture_free(&radius);
+}
+
+// A lamp of 8 x 8 pixels right beside a near bar, before a wall. From a point of the lens that lies u to one side the bar moves
+// by -RADIUS u pixels and the lamp by RADIUS / 2 u, so a column of the lamp d pixels beside the bar is seen where
+// u > -d / (1.5 RADIUS): a half disc and a strip of that width. Nothing of the lamp is known to be behind the bar. A guess
+// that went on with it there showed 0.8 to 0.86 of the light instead of 0.61, and in best, where patterns go on, a second
+// lamp elsewhere. What is guessed takes the wall's place, of a quad at the bar's edge: a quarter of a column in 8.
+static void beside_bar(struct hf_context *c, double light, enum hf_layers_quality quality)
+{
+    enum { BAR = 100, WIDE = 24, TALL = 240 };
+    struct picture colour = picture_new(WIDTH, TALL, 3), radius = picture_new(WIDTH, TALL, 1), out[2];
+    struct hf_params p = scene_params();
+    for (int k = 0; k < WIDTH * TALL; k++) {
+        const int x = k % WIDTH, bar = x >= BAR && x < BAR + WIDE;
+        radius.plane[0][k] = bar ? -RADIUS : RADIUS / 2;
+        for (int i = 0; i < 3; i++)
+            colour.plane[i][k] = (float)(bar ? BOX : WALL);
+    }
+    p.engine = HF_ENGINE_LAYERS;
+    p.max_radius = HF_DERIVE;
+    p.layers.quality = quality;
+    const struct hf_depth depth = picture_radii(&radius);
+    double gained = 0;
+    for (int lit = 0; lit < 2; lit++) {
+        for (int k = 0; k < 64 * lit; k++)
+            for (int i = 0; i < 3; i++)
+                colour.plane[i][(TALL / 2 + k / 8) * WIDTH + BAR + WIDE + k % 8] = (float)light;
+        out[lit] = render(c, &colour, &depth, &p);
+    }
+    for (int k = 0; k < WIDTH * TALL; k++)
+        gained += out[1].plane[1][k] - out[0].plane[1][k];
+    double seen = 0;
+    for (int i = 0; i < 8; i++) {
+        const double t = (i + 0.5) / (1.5 * RADIUS);
+        seen += (0.5 + (t * sqrt(1 - t * t) + asin(t)) / PI) / 8;
+    }
+    gained /= 64 * (light - WALL);
+    CHECK_MSG(fabs(gained - seen) <= 0.25 / 8, "light %g, quality %d: %.3f of the lamp's light, not %.3f", light,
+              (int)quality, gained, seen);
+    struct picture *const made[] = {&colour, &radius, &out[0], &out[1]};
+    for (int i = 0; i < 4; i++)
+        picture_free(made[i]);
 }
 
 int main(void)
@@ -149,6 +193,9 @@ int main(void)
             discs(c, lights[i], (enum hf_layers_quality)quality);
     for (int i = 0; i < 4; i++)
         rim(c, lights[i]);
+    for (int quality = HF_LAYERS_STANDARD; quality <= HF_LAYERS_BEST; quality++)
+        for (int i = 1; i < 4 && quality != HF_LAYERS_DRAFT; i++)  // a draft has no hidden samples
+            beside_bar(c, lights[i], (enum hf_layers_quality)quality);
     hf_close(&c);
     return check_report();
 }

@@ -254,6 +254,16 @@ void layers_make(struct world *w, int which)
                 line(w, ARENA_MADE, i)[x] = rng_float(&w->rng, 0, 0.5f);
         put(w, IN, w->n, 32);
         return;
+    case LAYERS_LAMPS:
+    case LAYERS_LAMPS_ALPHA:
+        fill_set(w, 0, 0, w->n);
+        for (int i = 6; i < 8; i++)
+            fill_surfaces(w, i, 0, 2 * w->n);
+        for (int i = 8; i < 12; i++)
+            for (int x = 0; x < 2 * w->n; x++)
+                line(w, ARENA_MADE, i)[x] = rng_float(&w->rng, 0, 0.5f);
+        put(w, IN, w->n, 32);
+        return;
     case LAYERS_QUADS:
         for (int i = 0; i < 4; i++)
             fill_set(w, 6 * i, 0, 2 * w->n);
@@ -396,6 +406,21 @@ static void drawing_call(struct world *w, const struct kernels *k, enum arena a,
         s->up(line(w, a, 0), line(w, a, 1), w->n, out);
 }
 
+static void lamps_call(struct world *w, const struct kernels *k, enum arena a, int alpha)
+{
+    struct hf_lamp_tap tap[HF_LAYERS_LAMP_TAPS];
+    const float *in[6];
+    float *const out = line(w, a, IN);
+    for (int i = 0; i < 6; i++)
+        in[i] = line(w, a, i);
+    for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++)
+        tap[i] = (struct hf_lamp_tap){line(w, a, 8 + i % 2),
+                                      {line(w, a, 6 + i / 2 % 2), line(w, a, 7 - i / 2 % 2)},
+                                      {alpha ? line(w, a, 10) : NULL, alpha ? line(w, a, 11) : NULL}};
+    memcpy(out, in[4], sizeof *out * (size_t)w->n);
+    k->layers.lamps(in, tap, w->n, out);
+}
+
 void layers_call(struct world *w, const struct kernels *k, enum arena a, int which)
 {
     const struct hf_layers_kernels *s = &k->layers;
@@ -421,6 +446,10 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
                                                : NULL,
                   w->n, out, any);
         w->result[a].returned = unmarked(any, out, w->n);
+        return;
+    case LAYERS_LAMPS:
+    case LAYERS_LAMPS_ALPHA:
+        lamps_call(w, k, a, which == LAYERS_LAMPS_ALPHA);
         return;
     case LAYERS_QUADS:
         quads_call(w, k, a);

@@ -122,6 +122,8 @@ const struct test tests[] = {
     ROW("layers_nine", LAYERS_NINE, 600, layers_make, layers_call, layers_check),
     ROW("layers_shares", LAYERS_SHARES, 600, layers_make, layers_call, layers_check),
     ROW("layers_shares alpha", LAYERS_SHARES_ALPHA, 600, layers_make, layers_call, layers_check),
+    ROW("layers_lamps", LAYERS_LAMPS, 600, layers_make, layers_call, layers_check),
+    ROW("layers_lamps alpha", LAYERS_LAMPS_ALPHA, 600, layers_make, layers_call, layers_check),
     ROW("layers_quads", LAYERS_QUADS, 600, layers_make, layers_call, layers_check),
     ROW("layers_merge", LAYERS_MERGE, 600, layers_make, layers_call, layers_check),
     ROW("layers_taps", LAYERS_TAPS, 600, layers_make, layers_call, layers_check),

@@ -422,6 +422,7 @@ void hf_layers_kernels_c(struct hf_layers_kernels *k)
         .roots = hf_layers_roots_c,
         .nine = hf_layers_nine_c,
         .shares = hf_layers_shares_c,
+        .lamps = hf_layers_lamps_c,
         .quads = hf_layers_quads_c,
         .merge = hf_layers_merge_c,
         .taps = hf_layers_taps_c,

@@ -65,11 +65,52 @@ void hf_layers_shares_c(const float *const in[6], const float *const around[5], 
     }
 }
 
+static float nearest_of(const float *const row[2], int x)
+{
+    return fminf(fminf(row[0][2 * x], row[1][2 * x]), fminf(row[0][2 * x + 1], row[1][2 * x + 1]));
+}
+
+static float mean_of(const float *const row[2], int x)
+{
+    return ((row[0][2 * x] + row[1][2 * x]) + (row[0][2 * x + 1] + row[1][2 * x + 1])) * 0.25f;
+}
+
+void hf_layers_lamps_c(const float *const in[6], const struct hf_lamp_tap tap[HF_LAYERS_LAMP_TAPS], int n,
+                       float *weight)
+{
+    for (int x = 0; x < n; x++) {
+        const float light = (in[0][x] * fabsf(in[0][x]) + in[1][x] * fabsf(in[1][x])) + in[2][x] * fabsf(in[2][x]);
+        const float own = root(light);
+        float most = own, seen = 0, sum = 0;
+        for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
+            const float w = hf_saturate(nearest_of(tap[i].radius, x) - in[5][x] + 2);
+            const float v = tap[i].alpha[0] ? tap[i].root[x] + (1 - mean_of(tap[i].alpha, x)) * own : tap[i].root[x];
+            if (i < HF_LAYERS_LAMP_NEXT) {
+                most = most > w * v ? most : w * v;
+                continue;
+            }
+            seen = seen + w;
+            sum = sum + w * v;
+        }
+        const float mean = seen > 0 ? sum / seen : 0, cap = mean * mean * HF_LAYERS_LAMP, brightest = most * most;
+        if (in[4][x] > 0 && brightest > cap) {
+            const float lamp = 1 - hf_saturate(2 * cap / brightest - 1);
+            weight[x] = in[4][x] * (1 - hf_saturate(seen) * lamp);
+        }
+    }
+}
+
 // Rows of the scratch: means of colour and means of alpha, each with APART rows above and below; one row of means
 // along columns; two rows of zeros; roots, with REACH rows above and below.
 size_t hf_layers_highlight_floats(int width, int height)
 {
     return ((size_t)width + 2 * PAD) * (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);
+}
+
+// Where the roots of a cell's first quad are, behind the means.
+static ptrdiff_t roots_from(ptrdiff_t stride)
+{
+    return (3 + REACH) * stride + PAD;
 }
 
 // Means around a cell of the square roots of three channels' sums. A channel below 0 is taken as zeros.
@@ -78,7 +119,7 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
     const struct hf_layers_kernels *k = hf_layers_kernels(f);
     const int width = r.x1 - r.x0, height = r.y1 - r.y0;
     const ptrdiff_t stride = width + 2 * PAD;
-    float *down = scratch + PAD, *none = scratch + stride, *roots = scratch + (3 + REACH) * stride + PAD;
+    float *down = scratch + PAD, *none = scratch + stride, *roots = scratch + roots_from(stride);
     const float *in[9];
     memset(none, 0, sizeof(float) * 2 * (size_t)stride);
     for (int y = -REACH; y < height + REACH && !hf_stopped(f->s->stop); y++) {
@@ -110,13 +151,43 @@ static ptrdiff_t cover_from(struct hf_rect cell)
     return (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell);
 }
 
+// What follows the means. It keeps the roots of colours, which are made last.
+static ptrdiff_t rest_from(struct hf_rect cell)
+{
+    return cover_from(cell) + (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell);
+}
+
 void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch)
 {
     float *mean = scratch + APART * stride_of(cell) + PAD, *cover = mean + cover_from(cell);
-    scratch = cover + (cell.y1 - cell.y0 + APART) * stride_of(cell) - PAD;
-    make_means(f, cell, (const int[]){0, 1, 2}, scratch, mean);
+    scratch += rest_from(cell);
     if (hf_layers(f->s)->channels == 4)
         make_means(f, cell, (const int[]){3, -1, -1}, scratch, cover);
+    make_means(f, cell, (const int[]){0, 1, 2}, scratch, mean);
+}
+
+void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch)
+{
+    static const int8_t away[HF_LAYERS_LAMP_TAPS / 4] = {1, 5, 8};  // quads
+    const float *roots = scratch + rest_from(cell) + roots_from(stride_of(cell));
+    const int alpha = hf_layers(f->s)->channels == 4;
+    for (int y = rows.y0; y < rows.y1 && !hf_stopped(f->s->stop); y++) {
+        struct hf_lamp_tap tap[HF_LAYERS_LAMP_TAPS];
+        float *in[6];
+        for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
+            const int d = i % 2 ? away[i / 4] : -away[i / 4], dx = i & 2 ? 0 : d, dy = i & 2 ? d : 0;
+            const int u = cell.x0 + dx, v = y + dy;
+            tap[i].root = roots + (v - cell.y0) * stride_of(cell) + dx;
+            for (int k = 0; k < 2; k++) {
+                tap[i].radius[k] = hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, 2 * u, 2 * v + k);
+                tap[i].alpha[k] = alpha ? hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], 3, 2 * u, 2 * v + k) : NULL;
+            }
+        }
+        hf_row(&f->buf[HF_LAYERS_BUF_QUADS], 3, cell.x0, y, in);
+        for (int i = 0; i < 2; i++)
+            in[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_QUADS_AT], i, cell.x0, y);
+        hf_layers_kernels(f)->lamps((const float *const *)in, tap, cell.x1 - cell.x0, in[4]);
+    }
 }
 
 void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch,

@@ -18,4 +18,11 @@ void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, fl
 void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch,
                           uint8_t *any);
 
+// Take lamps out of the farthest samples of some of its quads, from which hidden samples are made. A quad that is more than LAMP
+// times as bright as what lies 10 and 16 pixels beside it loses weight, and so does one next to it; from twice that on it has
+// none. Surfaces that are nearer by two pixels of radius do not count as beside. A lamp is small: what is hidden next to it is
+// the wall, not more of the lamp.
+#define HF_LAYERS_LAMP 8
+void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch);
+
 #endif

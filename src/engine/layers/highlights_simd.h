@@ -71,3 +71,56 @@ static void layers_shares_simd(const float *const in[6], const float *const arou
         }
     }
 }
+
+// The nearest radius of a row of quads' pixels, and the mean of their alpha.
+HF_INLINE vf layers_nearest_of(const float *const row[2], int x)
+{
+    vf even, odd;
+    vf_unzip(vf_min(vf_load(row[0] + x), vf_load(row[1] + x)),
+             vf_min(vf_load(row[0] + x + VF_N), vf_load(row[1] + x + VF_N)), &even, &odd);
+    return vf_min(even, odd);
+}
+
+HF_INLINE vf layers_mean_of(const float *const row[2], int x)
+{
+    vf even, odd;
+    vf_unzip(vf_add(vf_load(row[0] + x), vf_load(row[1] + x)),
+             vf_add(vf_load(row[0] + x + VF_N), vf_load(row[1] + x + VF_N)), &even, &odd);
+    return vf_mul(vf_add(even, odd), vf_set1(0.25f));
+}
+
+static void layers_lamps_simd(const float *const in[6], const struct hf_lamp_tap tap[HF_LAYERS_LAMP_TAPS], int n,
+                              float *weight)
+{
+    const vf one = vf_set1(1), zero = vf_zero();
+    for (int x = 0; x < n; x += VF_N) {
+        const vf r = vf_load(in[5] + x), w = vf_load(in[4] + x);
+        vf light = zero, seen = zero, sum = zero;
+        for (int c = 0; c < 3; c++) {
+            const vf v = vf_load(in[c] + x);
+            light = vf_fma(v, vf_abs(v), light);
+        }
+        const vf own = vf_sqrt(vf_max(light, zero));
+        vf most = own;
+        for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
+            const vf part = vf_saturate(vf_add(vf_sub(layers_nearest_of(tap[i].radius, 2 * x), r), vf_set1(2)));
+            vf v = vf_load(tap[i].root + x);
+            if (tap[i].alpha[0])
+                v = vf_fma(vf_sub(one, layers_mean_of(tap[i].alpha, 2 * x)), own, v);
+            if (i < HF_LAYERS_LAMP_NEXT) {
+                most = vf_max(vf_mul(part, v), most);
+                continue;
+            }
+            seen = vf_add(seen, part);
+            sum = vf_fma(part, v, sum);
+        }
+        const vf mean = vf_keep(vf_gt(seen, zero), vf_div(sum, seen));
+        const vf cap = vf_mul(vf_mul(mean, mean), vf_set1(HF_LAYERS_LAMP));
+        const vf brightest = vf_mul(most, most);
+        const vm bright = vm_and(vf_gt(w, zero), vf_gt(brightest, cap));
+        if (!vm_any(bright))
+            continue;
+        const vf lamp = vf_sub(one, vf_saturate(vf_sub(vf_div(vf_add(cap, cap), brightest), one)));
+        vf_store(weight + x, vf_select(bright, vf_mul(w, vf_fnma(vf_saturate(seen), lamp, one)), w));
+    }
+}

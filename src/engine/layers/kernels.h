@@ -15,6 +15,15 @@ typedef void hf_layers_nine(const float *const in[9], int n, float *out);
 // the brightness at five pairs of pixels around; the least counts. covered: roots of alpha at the same places, or NULL.
 typedef void hf_layers_shares(const float *const in[6], const float *const around[5], const float *const covered[5],
                               int n, float *out, uint8_t *any);
+// The weight of n quads without lamps (highlights.h), from roots of colour, weight (4), radius (5): a quad that is no lamp keeps
+// weight[x], which is in[4][x]. A tap is a quad beside each: the root of its brightness, and of its two rows of pixels radius and
+// alpha (or NULL). The nearest of its pixels and the mean of alpha count, so that mirrored pictures give mirrored results.
+struct hf_lamp_tap {
+    const float *root, *radius[2], *alpha[2];
+};
+enum { HF_LAYERS_LAMP_NEXT = 4, HF_LAYERS_LAMP_TAPS = 12 };  // the first are next to the quad
+typedef void hf_layers_lamps(const float *const in[6], const struct hf_lamp_tap tap[HF_LAYERS_LAMP_TAPS], int n,
+                             float *weight);
 // The farthest samples of n quads, from two rows of samples: colour, weight (4), radius (5).
 typedef void hf_layers_quads(const float *const seen[2][6], const float *const mixed[2][6], int channels, int n,
                              float *const out[6]);
@@ -122,6 +131,7 @@ struct hf_layers_kernels {
     hf_layers_roots *roots;
     hf_layers_nine *nine;
     hf_layers_shares *shares;
+    hf_layers_lamps *lamps;
     hf_layers_quads *quads;
     hf_layers_merge *merge;
     hf_layers_taps *taps;
@@ -216,6 +226,7 @@ hf_layers_unmix hf_layers_unmix_c;
 hf_layers_roots hf_layers_roots_c;
 hf_layers_nine hf_layers_nine_c;
 hf_layers_shares hf_layers_shares_c;
+hf_layers_lamps hf_layers_lamps_c;
 hf_layers_quads hf_layers_quads_c;
 hf_layers_merge hf_layers_merge_c;
 hf_layers_taps hf_layers_taps_c;

@@ -106,6 +106,8 @@ void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
             hf_layers_highlights(f, r, rows, means, any.bright);
         if (l->levels)
             hf_layers_quads_pass(f, rows);
+        if (l->levels && l->set.highlights)
+            hf_layers_leave_lamps(f, r, rows, means);
         hf_layers_mark_seen(f, rows, &any);
     }
     if (l->guessed) {

@@ -18,6 +18,7 @@ void HF_SIMD_NAME(hf_layers_kernels)(struct hf_layers_kernels *k)
     k->roots = layers_roots_simd;
     k->nine = layers_nine_simd;
     k->shares = layers_shares_simd;
+    k->lamps = layers_lamps_simd;
     k->quads = layers_quads_simd;
     k->merge = layers_merge_simd;
     k->taps = layers_taps_simd;
