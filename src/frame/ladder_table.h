@@ -11,16 +11,14 @@
 #define HF_LADDER_STEPS \
     {"--engine gaussian --resolution quarter --iterations 4", 0.058137f, 0.078830f, 1.550f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_GAUSSIAN, .hexagon.resolution = 2, .scatter.resolution = 2, .gaussian.resolution = 2, .gaussian.iterations = 4}}, \
-    {"--engine gather", 0.033948f, 0.069395f, 17.98f, \
+    {"--engine gather", 0.029366f, 0.050115f, 17.98f, \
      {HF_PARAMS_DEFAULTS}}, \
-    {"--engine layers --spacing 8 --no-unmix --no-highlights", 0.029242f, 0.064780f, 32.23f, \
-     {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.spacing = 8, .layers.no_unmix = 1, .layers.no_highlights = 1}}, \
-    {"--engine layers", 0.021534f, 0.027190f, 47.14f, \
+    {"--engine layers", 0.021675f, 0.027726f, 47.14f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS}}, \
-    {"--engine layers --layers-quality best", 0.020354f, 0.027356f, 182.3f, \
+    {"--engine layers --layers-quality best", 0.020454f, 0.027763f, 182.3f, \
      {HF_PARAMS_DEFAULTS, .engine = HF_ENGINE_LAYERS, .layers.quality = 3}}
 // steps of draft, standard, high and best
-#define HF_LADDER_QUALITIES 1, 3, 4, 4
+#define HF_LADDER_QUALITIES 1, 2, 3, 3
 // milliseconds per megapixel of each engine with its default settings
 #define HF_LADDER_ENGINES 17.98f, 39.37f, 87.36f, 2.957f, 47.14f, 10.71f
 // clang-format on
