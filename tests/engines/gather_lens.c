@@ -372,7 +372,7 @@ static void bar_at_border(struct hf_context *c, float max_radius)
 }
 
 // A lamp beside a near bar: its own disc, of radius 6, does not reach over the bar. What shows through the bar comes
-// from the lamp's surroundings, and is at most 16 times as bright as without the lamp.
+// from the lamp's surroundings, and is at most 4 times as bright as without the lamp.
 static void no_ring(struct hf_context *c)
 {
     static const float WALL = 0x1p-10f;
@@ -391,7 +391,7 @@ static void no_ring(struct hf_context *c)
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         most = i % WIDTH < EDGE - 6 ? fmaxf(most, out.plane[1][i]) : most;
     // 50 roundings.
-    CHECK_MSG(most > 0 && most <= 16 * WALL * (1 + 50 * 6e-8f), "a lamp beside a bar shows through it: %g",
+    CHECK_MSG(most > 0 && most <= 4 * WALL * (1 + 50 * 6e-8f), "a lamp beside a bar shows through it: %g",
               (double)most);
     struct picture *const made[] = {&colour, &radii, &out};
     for (int i = 0; i < 3; i++)
