@@ -185,17 +185,22 @@ static double root(double v)
     return v > 0 ? sqrt(v) : v < 0 ? -sqrt(-v) : 0;
 }
 
-// The mean root of brightness, for that many channels, of the 18 x 18 pixels around the quad of (x, y).
+// The root of a pixel's brightness, for that many channels.
+static double bright_root(const struct frame *f, int from, int to, int x, int y)
+{
+    double sum = 0;
+    for (int c = from; c < to; c++)
+        sum += colour_at(f, c, x, y);
+    return root(fmax(sum, 0));
+}
+
+// The mean of that of the 18 x 18 pixels around the quad of (x, y).
 static double bright_mean(const struct frame *f, int from, int to, int x, int y)
 {
     double mean = 0;
     for (int v = -8; v < 10; v++)
-        for (int u = -8; u < 10; u++) {
-            double sum = 0;
-            for (int c = from; c < to; c++)
-                sum += colour_at(f, c, x + u, y + v);
-            mean += root(fmax(sum, 0)) / (18 * 18);
-        }
+        for (int u = -8; u < 10; u++)
+            mean += bright_root(f, from, to, x + u, y + v) / (18 * 18);
     return mean;
 }
 
@@ -250,7 +255,7 @@ static double lamp(const struct frame *f, int x, int y, const double *quad)
         for (int k = 0; k < 4; k++) {
             const int px = u + k % 2, py = v + k / 2;
             nearest = fmin(nearest, radius_at(f, px, py));
-            around += root(fmax(light_of(f, px, py), 0)) / 4;
+            around += bright_root(f, 0, 3, px, py) / 4;
             around += f->channels == 4 ? (1 - colour_at(f, 3, px, py)) * own / 4 : 0;
         }
         const double w = fmin(fmax(nearest - quad[RADIUS] + 2, 0), 1);

@@ -277,7 +277,7 @@ static void add_behind(const struct hf_frame *f, const struct sums *behind, stru
         const float *part = beyond(f, &l->level[i].kernel, r, y);
         for (int x = r.x0; x < r.x1; x++) {
             const float coc = *hf_at(&f->buf[HF_BUF_BLUR], 0, x, y);
-            const float share = hf_level_near(l, i, coc) * part[x - r.x0];
+            const float share = hf_level_near(f->s, i, coc) * part[x - r.x0];
             if (!(coc > 0 && share > 0))
                 continue;
             add(f, behind, x, y, share);

@@ -40,7 +40,7 @@ static float coc_of_light(const struct quad *q, const float light[4])
     const float least = __builtin_fminf(__builtin_fminf(coc[0], coc[1]), __builtin_fminf(coc[2], coc[3]));
     float weight[4], beyond[4];
     for (int i = 0; i < 4; i++) {
-        weight[i] = q->part[i] * __builtin_fminf(__builtin_fmaxf(light[i], HF_LIGHT_LEAST), HF_AREA_LARGEST);
+        weight[i] = q->part[i] * __builtin_fminf(__builtin_fmaxf(light[i], HF_OF_LIGHT_LEAST), HF_AREA_LARGEST);
         beyond[i] = weight[i] * (coc[i] - least);
     }
     const float all = (weight[0] + weight[1]) + (weight[2] + weight[3]);

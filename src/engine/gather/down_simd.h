@@ -11,7 +11,7 @@ struct down_row {
     float *colour[4], *part[2][4], *coc4[4];
     vf gain[2];
     struct hf_part_curve curve[2];
-    int of_light;  // far CoC of light is wanted
+    int of_light;  // the far CoC of light is wanted
 };
 
 HF_INLINE struct down_row down_row_at(const struct hf_frame *f, const int channels, int x, int y)
@@ -57,7 +57,7 @@ HF_INLINE vf down_coc_of_light(const struct quad *q, const vf light[4])
     const vf *coc = q->coc, least = vf_min(vf_min(coc[0], coc[1]), vf_min(coc[2], coc[3]));
     vf weight[4], beyond[4];
     for (int i = 0; i < 4; i++) {
-        weight[i] = vf_mul(q->part[i], vf_min(vf_max(light[i], vf_set1(HF_LIGHT_LEAST)), vf_set1(HF_AREA_LARGEST)));
+        weight[i] = vf_mul(q->part[i], vf_min(vf_max(light[i], vf_set1(HF_OF_LIGHT_LEAST)), vf_set1(HF_AREA_LARGEST)));
         beyond[i] = vf_mul(weight[i], vf_sub(coc[i], least));
     }
     return vf_add(least, vf_div(down_sum(beyond), vf_max(down_sum(weight), vf_set1(FLT_MIN))));
@@ -79,15 +79,13 @@ HF_INLINE vf quad_limited(const struct quad *q, vf v)
 }
 
 HF_INLINE void down_put_coc(enum hf_storage storage, const struct down_row *d, const struct quad *q, const int field,
-                            const vf light[4], int x, int stream)
+                            int x, int stream)
 {
     // Parts round as alpha does: where that is 1 it is their part.
     vf_put(d->coc4[field] + x, round_stored(storage, q->mean, 3), stream);
     if (field == 0)
         vf_put(d->coc4[HF_AREA_NEAR_MOST] + x, vf_max(vf_max(q->coc[0], q->coc[1]), vf_max(q->coc[2], q->coc[3])),
                stream);
-    else if (d->of_light)
-        vf_put(d->coc4[HF_AREA_FAR_OF_LIGHT] + x, down_coc_of_light(q, light), stream);
 }
 
 // A row of any format, by way of lines: the fields that are asked for.
@@ -111,15 +109,17 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, cons
                 vf_store(d.colour[c] + x, mean);
                 vf_store(d.part[0][c] + x, quad_limited(&q[0], down_part(q[0].part, quad)));
             }
-            for (int i = 0; i < 4 && far && c < 3; i++)
+            for (int i = 0; i < 4 && far && d.of_light && c < 3; i++)
                 light[i] = vf_max(light[i], quad[i]);
             if (far)
                 vf_store(d.part[1][c] + x, quad_limited(&q[1], down_part(q[1].part, quad)));
         }
         if (near)
-            down_put_coc(f->s->storage, &d, &q[0], 0, light, x, 0);
+            down_put_coc(f->s->storage, &d, &q[0], 0, x, 0);
         if (far)
-            down_put_coc(f->s->storage, &d, &q[1], 1, light, x, 0);
+            down_put_coc(f->s->storage, &d, &q[1], 1, x, 0);
+        if (far && d.of_light)
+            vf_store(d.coc4[HF_AREA_FAR_OF_LIGHT] + x, down_coc_of_light(&q[1], light));
     }
     if (near) {
         hf_store_rgb(f, d.colour, n);
@@ -140,14 +140,17 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
         if (near)
             vf_put(d->colour[c] + x, round_stored(storage, mean[c], c), stream);
     }
-    vf light[4];
-    for (int i = 0; i < 4; i++)
-        light[i] = vf_mul(vf_max(vf_max(quad[0][i], quad[1][i]), quad[2][i]), vf_set1(0x1p112f));
     for (int field = 0; field < 2; field++) {
         if (!(field ? far : near))
             continue;
         struct quad q = down_quad_at(d, unit, field, x);
-        down_put_coc(storage, d, &q, field, light, x, stream);
+        down_put_coc(storage, d, &q, field, x, stream);
+        if (field && d->of_light) {
+            vf light[4];
+            for (int i = 0; i < 4; i++)
+                light[i] = vf_mul(vf_max(vf_max(quad[0][i], quad[1][i]), quad[2][i]), vf_set1(0x1p112f));
+            vf_put(d->coc4[HF_AREA_FAR_OF_LIGHT] + x, down_coc_of_light(&q, light), stream);
+        }
         for (int i = 0; i < 4; i++)  // products are those with samples at full size
             q.part[i] = vf_mul(q.part[i], vf_set1(0x1p112f));
         for (int c = 0; c < 3; c++)

@@ -267,7 +267,6 @@ static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_
         err = build_field(g, 1, s, p, r->full[1], r->largest[1], most, mem);
     if (!err)
         err = build_levels(behind, 0, radius, count, r->full[0], s, p, mem);
-    behind->by_distance = g->many;
     for (int i = 0; i < behind->count; i++) {
         struct hf_level *l = &behind->level[i];
         l->counts = 1 / (g->many ? l->area * l->area * l->area : l->area);

@@ -34,7 +34,7 @@ enum { HF_AREA_NEAR, HF_AREA_FAR, HF_AREA_NEAR_MOST, HF_AREA_FAR_OF_LIGHT };
 
 // The largest channel counts as this at least, so that black quads have a CoC too; and as HF_AREA_LARGEST at most, so that
 // sums are finite.
-#define HF_LIGHT_LEAST 0x1p-40f
+#define HF_OF_LIGHT_LEAST 0x1p-40f
 
 // A kernel as large as some pixels' blur. CoC is relative to a radius no smaller than the frame's largest (engine.c).
 struct hf_level {
@@ -61,9 +61,8 @@ struct hf_part_curve {
 // smallest is a blend of that and the picture.
 struct hf_levels {
     int count;
-    int by_distance;  // of what near pixels hide: samples count by it; else, with one kernel, all alike
-    int filled;       // the first that any sample is in: those before it are only seen, and have no kernel
-    float gain;       // 1 / coc of the smallest: hf_level_part of min(1, gain x CoC) is a pixel's part in the field
+    int filled;  // the first that any sample is in: those before it are only seen, and have no kernel
+    float gain;  // 1 / coc of the smallest: hf_level_part of min(1, gain x CoC) is a pixel's part in the field
     // Of near pixels: the same of min(1, hides x CoC) is how far the field hides the picture where they are: as gain, but where
     // there is one kernel alone, wholly from seven eighths of its radius on. A light in a mixed pixel would shine through as a
     // speck.
@@ -111,9 +110,11 @@ static inline float hf_level_share(const struct hf_levels *l, int i, float coc)
 // radius over the level's. A level is a mean over its area, so a sample counts by the inverse of its distance to the eighth:
 // what is hidden is most often what is seen nearest to it. (To the fourth, `fence` had 31.9 dB instead of 32.7.) In its own
 // level a sample counts once. Where all count less, farther away than the blur is wide, they fade out.
-static inline float hf_level_near(const struct hf_levels *l, int i, float coc)
+// With one kernel all count alike.
+static inline float hf_level_near(const struct hf_setup *s, int i, float coc)
 {
-    const float square = coc * coc, times = l->by_distance ? (square * square) * square : 1;
+    const struct hf_levels *l = hf_gather_behind(s);
+    const float square = coc * coc, times = hf_gather(s)->many ? (square * square) * square : 1;
     return (hf_level_reached(l, i, coc) * times) * l->level[i].counts;
 }
 

@@ -84,13 +84,14 @@ static void area_add_row(const struct hf_frame *f, const struct area_sums *to, c
 }
 
 // What near pixels take from a level of what they hide: 0 where there is no near CoC. Returns what blocks take any.
-HF_INLINE uint64_t area_near_row(const struct hf_levels *l, int i, const float *coc, int x0, int n, float *share)
+HF_INLINE uint64_t area_near_row(const struct hf_setup *s, int i, const float *coc, int x0, int n, float *share)
 {
+    const struct hf_levels *l = hf_gather_behind(s);
     const vf weight = vf_set1(l->level[i].counts);
     uint64_t wanted = 0;
     for (int x = 0; x < n; x += VF_N) {
         const vf v = vf_load(coc + x), square = vf_mul(v, v);
-        const vf times = l->by_distance ? vf_mul(vf_mul(square, square), square) : vf_set1(1);
+        const vf times = hf_gather(s)->many ? vf_mul(vf_mul(square, square), square) : vf_set1(1);
         const vf part = vf_keep(vf_gt(v, vf_zero()), vf_mul(vf_mul(area_reached(l, i, v), times), weight));
         vf_store(share + x, part);
         if (vm_any(vf_gt(part, vf_zero())))
@@ -255,7 +256,7 @@ static void area_near_hidden(const struct hf_frame *f, struct hf_rect r, int far
         const struct hf_taps *t = &l->level[i].kernel.taps;
         const int leaves = far && area_leaves(f->s, i);
         for (int y = r.y0; y < r.y1; y++)
-            rows.level[y - rows.y0].wanted = area_near_row(l, i, hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y), r.x0, n,
+            rows.level[y - rows.y0].wanted = area_near_row(f->s, i, hf_at(&f->buf[HF_BUF_BLUR], 0, r.x0, y), r.x0, n,
                                                            hf_at(&f->buf[HF_BUF_SUM], 1, r.x0, y));
         const struct hf_rect to = area_touched(&rows, r, (struct hf_reach){0, 0}, 1);
         if (area_is_empty(to))
