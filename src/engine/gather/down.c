@@ -33,7 +33,7 @@ static float most_of(const struct quad *q)
     return __builtin_fmaxf(__builtin_fmaxf(q->coc[0], q->coc[1]), __builtin_fmaxf(q->coc[2], q->coc[3]));
 }
 
-// The mean CoC of the light. If all are equal it is that, to the bit.
+// The mean CoC, in which a pixel counts by its part and its light. Of four equal ones it is that CoC, to the bit.
 static float coc_of_light(const struct quad *q, const float light[4])
 {
     const float *coc = q->coc;

@@ -15,8 +15,8 @@ typedef void hf_layers_nine(const float *const in[9], int n, float *out);
 // the brightness at five pairs of pixels around; the least counts. covered: roots of alpha at the same places, or NULL.
 typedef void hf_layers_shares(const float *const in[6], const float *const around[5], const float *const covered[5],
                               int n, float *out, uint8_t *any);
-// The weight of n quads without lamps (highlights.h), from roots of colour, weight (4), radius (5): a quad that is no lamp keeps
-// weight[x], which is in[4][x]. A tap is a quad beside each: the root of its brightness, and of its two rows of pixels radius and
+// Take lamps out of n quads (highlights.h). in: roots of colour, weight (4), radius (5). weight holds in[4]; lamps lose some of it
+// or all, others keep it. A tap is a quad beside each: the root of its brightness and, of its two rows of pixels, radius and
 // alpha (or NULL). The nearest of its pixels and the mean of alpha count, so that mirrored pictures give mirrored results.
 struct hf_lamp_tap {
     const float *root, *radius[2], *alpha[2];
