@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of layers one by one: how closely slices lie, which colour a side of an edge gets if none of its pixels is
-// un-mixed, what shows beside an edge in one pixel alone, and how much a lamp counts among hidden samples.
+// un-mixed, what shows beside an edge in one pixel alone, how hairs are un-mixed where no pixel is sure, and how much a lamp
+// counts among hidden samples.
 #include <float.h>
 #include <math.h>
 
@@ -127,6 +128,62 @@ static void sliver(void)
     }
 }
 
+// Hairs a pixel wide, of one colour, stand a pixel apart before a wall, and no pixel is sure. Either the middle pixel is the
+// wall's, and a hair covers two fifths of it; or, lit, it is a hair's that covers half of a lamp of 60, which shines in the
+// wall's pixel beside it.
+enum { HAIRS = 9, BESIDE = 4 };
+struct hairs {
+    float radius[HAIRS], sure[HAIRS], middle[HAIRS], slope[HAIRS], colour[7][HAIRS], out[2][6][HAIRS];
+    uint8_t any[1];
+};
+
+static void make_hairs(struct hairs *h, int lit)
+{
+    *h = (struct hairs){.any = {0}};
+    struct hf_unmix_row row = {.channels = 3, .middle = h->middle + BESIDE, .slope = h->slope + BESIDE, .any = h->any};
+    for (int x = 0; x < HAIRS; x++) {
+        const int hair = x % 2 != lit;
+        h->radius[x] = hair ? -2 : 8;
+        h->middle[x] = 3;
+        h->slope[x] = 2.0f / 10;
+        for (int y = 0; y < 7; y++)
+            h->colour[y][x] = hair ? 0.1f : 0.9f;
+    }
+    h->colour[3][BESIDE] = lit ? 30 : 0.4f * 0.1f + 0.6f * 0.9f;
+    if (lit)
+        h->colour[3][BESIDE + 1] = 60;
+    for (int y = 0; y < 7; y++) {
+        row.radius[y] = h->radius + BESIDE;
+        row.sure[y] = h->sure + BESIDE;
+        for (int c = 0; c < 3; c++)
+            row.colour[y][c] = h->colour[y] + BESIDE;
+    }
+    for (int i = 0; i < 6; i++) {
+        row.seen[i] = h->out[0][i] + BESIDE;
+        row.mixed[i] = h->out[1][i] + BESIDE;
+    }
+    hf_layers_unmix_c(&row, 1);
+}
+
+static void thicket(void)
+{
+    struct hairs h;
+    make_hairs(&h, 0);
+    // Both means are exact. The share by depth, 0, counts a thousandth of the squares of both colours, 0.82, to the 0.64 of
+    // their squared distance.
+    const float hair = h.out[0][4][BESIDE];
+    CHECK_MSG(hair > 0.4f * (1 - 0.0014f) && hair < 0.4f + 8 * FLT_EPSILON, "a hair covers %g of a pixel, not 0.4",
+              (double)hair);
+    CHECK_MSG(h.out[0][5][BESIDE] == -2 && h.out[1][5][BESIDE] == 8, "radii %g and %g, not -2 and 8",
+              (double)h.out[0][5][BESIDE], (double)h.out[1][5][BESIDE]);
+    // The lamp's own pixel is 256 times as bright as the middle one to the eighth power, so all but a 257th of the means is
+    // replaced. The hair's mean before was at most that of the pixels beside it, 0.1, so less than a 30th of the light stays.
+    make_hairs(&h, 1);
+    const float kept = h.out[0][0][BESIDE] * h.out[0][4][BESIDE], back = h.out[1][0][BESIDE] * h.out[1][4][BESIDE];
+    CHECK_MSG(kept < 1, "%g of a lamp's light stay with a hair before it", (double)kept);
+    CHECK_MSG(fabsf(kept + back - 30) < 1, "the pixel's light is %g, not 30", (double)(kept + back));
+}
+
 // A lamp of 4096 among hidden samples of 1 at the same depth. It counts by the fourth power of 16 / 64, a 256th; by a
 // tenth of that for its other colour; and by its place at the end of the line, one of 49 parts.
 static void lamp_in_line(void)
@@ -153,6 +210,7 @@ int main(void)
         slices((enum hf_layers_quality)quality);
     farthest();
     sliver();
+    thicket();
     lamp_in_line();
     return check_report();
 }

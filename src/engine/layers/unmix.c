@@ -169,20 +169,24 @@ static float lit(const struct hf_unmix_row *u, int x, float mean[2][5])
                                                                  : 0;
 }
 
-static void unmix_pixel(const struct hf_unmix_row *u, int x)
+// The means and variances of the two sides. mixed: what a mixed pixel counts where a sure one counts 1.
+static void sides(const struct hf_unmix_row *u, int x, float mixed, float weight[2], float mean[2][5], float spread[2])
 {
-    float weight[2] = {0}, counted[2] = {0}, mean[2][5] = {{0}}, spread[2] = {0};
     const float plain = light_of(u, 3, x) * HF_UNMIX_PLAIN;
-    const float middle = u->middle[x], slope = u->slope[x], own = u->radius[3][x];
-    const float a0 = hf_edges_front(middle, slope, own);
+    float counted[2] = {0};
+    for (int side = 0; side < 2; side++) {
+        weight[side] = spread[side] = 0;
+        for (int c = 0; c < 5; c++)
+            mean[side][c] = 0;
+    }
     for (int y = 0; y < 7; y++)
         for (int i = 0; i < 7; i++) {
             const int at = x + i - 3;
             if (y == 3 && i == 3)
                 continue;
-            const float sure = u->sure[y][at], w = sure * sure * hf_unmix_weights[y][i];
-            const float front = w * hf_edges_front(middle, slope, u->radius[y][at]), of[2] = {front, w - front};
-            const float counts = hf_layers_dimmed(light_of(u, y, at), plain);
+            const float sure = u->sure[y][at], w = (sure * sure + mixed) * hf_unmix_weights[y][i];
+            const float front = w * hf_edges_front(u->middle[x], u->slope[x], u->radius[y][at]);
+            const float of[2] = {front, w - front}, counts = hf_layers_dimmed(light_of(u, y, at), plain);
             float square = 0;
             for (int c = 0; c < u->channels; c++)
                 square = square + u->colour[y][c][at] * u->colour[y][c][at];
@@ -198,11 +202,72 @@ static void unmix_pixel(const struct hf_unmix_row *u, int x)
         }
     for (int side = 0; side < 2; side++)
         spread[side] = finish(u->channels, counted[side], spread[side], mean[side]);
+}
+
+// In a thicket, where no sure pixel tells, a lamp behind it would be taken for the front where the front is nearer the
+// pixel's middle. So where a pixel is far brighter than the dark ones of both sides, the means become those of a lamp: the
+// front's is that of its dark pixels, the back's that of its brightest ones, as far as the brightest pixels are the back's.
+// thick: how much of this there is, 0 to 1.
+static void lamp_in_thicket(const struct hf_unmix_row *u, int x, float thick, float mean[2][5], float spread[2])
+{
+    const float own = light_of(u, 3, x), plain = own * HF_UNMIX_DARK;
+    float most = 0, least = own, dark[2] = {0}, light[2] = {0}, bright[2] = {0}, lamp[2][5] = {{0}};
+    for (int i = 0; i < 49; i++) {
+        const float v = light_of(u, i / 7, x + i % 7 - 3);
+        most = v > most ? v : most;
+        least = v < least ? v : least;
+    }
+    if (!(own > least * HF_UNMIX_TIMES))
+        return;
+    for (int i = 0; i < 49; i++) {
+        const int y = i / 7, at = x + i % 7 - 3;
+        const float v = light_of(u, y, at), far = v / most, square = far * far, fourth = square * square;
+        const float front = hf_edges_front(u->middle[x], u->slope[x], u->radius[y][at]), back = 1 - front;
+        const float few = 0.015625f * hf_unmix_weights[y][i % 7] * hf_layers_dimmed(v, plain);  // sums of 49 are finite
+        const float brightest = 0.015625f * (fourth * fourth), w[2] = {few * front, brightest * back};
+        dark[0] = dark[0] + w[0];
+        dark[1] = dark[1] + few * back;
+        light[0] = light[0] + w[0] * v;
+        light[1] = light[1] + few * back * v;
+        bright[0] = bright[0] + brightest * front;
+        bright[1] = bright[1] + w[1];
+        for (int side = 0; side < 2; side++) {
+            for (int c = 0; c < u->channels; c++)
+                lamp[side][c] = lamp[side][c] + w[side] * u->colour[y][c][at];
+            lamp[side][4] = lamp[side][4] + w[side] * u->radius[y][at];
+        }
+    }
+    if (!(dark[0] > 0) || !(bright[1] > 0))
+        return;
+    const float front = light[0] / dark[0], back = dark[1] > 0 ? light[1] / dark[1] : 0;
+    const float larger = front > back ? front : back, floor = larger > 1e-30f ? larger : 1e-30f;
+    const float by = hf_saturate((own / floor - HF_UNMIX_TIMES) * 0.5f) * (bright[1] / (bright[0] + bright[1])) *
+                     hf_saturate(thick * 2);
+    for (int side = 0; side < 2; side++) {
+        spread[side] = spread[side] - by * spread[side];
+        for (int c = 0; c < 5; c++) {
+            const float v = lamp[side][c] / (side ? bright[1] : dark[0]);
+            mean[side][c] = mean[side][c] + by * (v - mean[side][c]);
+        }
+    }
+}
+
+static void unmix_pixel(const struct hf_unmix_row *u, int x)
+{
+    float weight[2], mean[2][5], spread[2];
+    const float own = u->radius[3][x], a0 = hf_edges_front(u->middle[x], u->slope[x], own);
+    sides(u, x, 0, weight, mean, spread);
+    const float unsure = 1 - hf_saturate((weight[0] + weight[1]) * (1 / HF_UNMIX_FAINT)), told = a0 + a0 - 1;
+    const float thick = unsure * (told * told);
+    if (thick > 0)
+        sides(u, x, thick * HF_UNMIX_UNSURE, weight, mean, spread);
     if (!hf_unmix_complete(u, x, weight, mean, spread)) {
         keep(u, x);
         return;
     }
     const float known = hf_saturate((weight[0] + weight[1]) * (1 / HF_UNMIX_FAINT));
+    if (thick > 0)
+        lamp_in_thicket(u, x, thick, mean, spread);
     float behind;
     const float own_share = share(u, x, a0, mean[0], mean[1], spread, &behind), by = (1 - u->sure[3][x]) * known;
     const float lamp = lit(u, x, mean), less = own_share < HF_UNMIX_RIM ? own_share : HF_UNMIX_RIM;

@@ -7,14 +7,18 @@
 
 // Which pixels are mixed: pixel/edges.h. In the means of both sides a pixel counts by the square of how surely it is not
 // mixed, so the weight of a thin thing's last sure pixels falls to 0 gently.
-// FAINT: un-mixing fades out as the weight of both sides falls below this.
-// LEAN: where one side has less than this share of that weight, its mean leans on those of its pixels whose colours are
+// FAINT: un-mixing fades out as the weight of both sides falls below this. But where the pixel's own radius is clearly the
+// front's or the back's, mixed pixels count in the means as well then, in the end UNSURE each: otherwise hair and grass, of
+// which no pixel is sure, would keep their mixtures and become rows of dots. On a steep slope, where all pixels are as mixed,
+// radii are neither.
+// LEAN: where one side has less than this share of the weight, its mean leans on those of its pixels whose colours are
 // farthest from the other side's mean. On a slope that is barely mixed, weights change ten times as fast as radii. FAINT
 // and LEAN fade slowly enough that the last bit of a radius is never visible.
 // PLAIN: samples more than this many times as bright as the mixed pixel are dimmed. Otherwise the mean of a lamp and
 // the wall around it would be so bright that a mixture of the wall and the front would seem to be all front. A back
 // that covers less than an eighth of the pixel may truly be that bright, but so small a share matters little.
 #define HF_UNMIX_FAINT 0.25f
+#define HF_UNMIX_UNSURE 0.1f
 #define HF_UNMIX_LEAN 0.08f
 #define HF_UNMIX_PLAIN 8
 // The front's share is a mean of two estimates: by colour, with weight 1, and by the pixel's depth, with weight
@@ -40,6 +44,10 @@
 #define HF_UNMIX_LAMP 1.5f
 #define HF_UNMIX_PIXELS 7
 #define HF_UNMIX_RIM 0.75f
+// The same in a thicket, where a pixel more than TIMES as bright as the dark pixels of both sides shows a lamp. Dark are
+// those below DARK of its own light.
+#define HF_UNMIX_TIMES 2
+#define HF_UNMIX_DARK 0.125f
 
 // 1 / d^4 for 7 x 7 pixels; 0 for the middle one.
 extern const float hf_unmix_weights[7][7];

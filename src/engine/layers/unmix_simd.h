@@ -125,15 +125,15 @@ HF_INLINE void layers_complete(const struct hf_unmix_row *u, int x, const int ch
     }
 }
 
-// Means and variances of the two sides. Returns the lanes that have both sides.
-HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf mean[2][5],
-                          vf spread[2], vf *known)
+// Means and variances of the two sides. mixed: what a mixed pixel counts where a sure one counts 1.
+HF_INLINE void layers_sides(const struct hf_unmix_row *u, int x, const int channels, vf mixed, vf weight[2],
+                            vf mean[2][5], vf spread[2])
 {
     const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x);
     const vf plain = vf_mul(layers_light_of(u, 3, x), vf_set1(HF_UNMIX_PLAIN));
-    vf weight[2] = {vf_zero(), vf_zero()}, counted[2] = {vf_zero(), vf_zero()};
+    vf counted[2] = {vf_zero(), vf_zero()};
     for (int i = 0; i < 2; i++) {
-        spread[i] = vf_zero();
+        weight[i] = spread[i] = vf_zero();
         for (int c = 0; c < 5; c++)
             mean[i][c] = vf_zero();
     }
@@ -143,7 +143,7 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
             if (y == 3 && i == 3)
                 continue;
             const vf sure = vf_load(u->sure[y] + at);
-            const vf w = vf_mul(vf_mul(sure, sure), vf_set1(hf_unmix_weights[y][i]));
+            const vf w = vf_mul(vf_fma(sure, sure, mixed), vf_set1(hf_unmix_weights[y][i]));
             const vf r = vf_load(u->radius[y] + at), f = vf_mul(w, layers_front(middle, slope, r)), b = vf_sub(w, f);
             weight[0] = vf_add(weight[0], f);
             weight[1] = vf_add(weight[1], b);
@@ -164,12 +164,95 @@ HF_INLINE vm layers_sides(const struct hf_unmix_row *u, int x, const int channel
         }
     for (int i = 0; i < 2; i++)
         spread[i] = layers_finish(channels, counted[i], spread[i], mean[i]);
+}
+
+// Out of line: most rows have no thicket.
+static __attribute__((noinline)) void layers_sides_in_thicket(const struct hf_unmix_row *u, int x, const int channels,
+                                                              vf thick, vf weight[2], vf mean[2][5], vf spread[2])
+{
+    layers_sides(u, x, channels, vf_mul(thick, vf_set1(HF_UNMIX_UNSURE)), weight, mean, spread);
+}
+
+// The channels of pixel `at` of row y, and its radius behind them.
+HF_INLINE vf layers_value(const struct hf_unmix_row *u, int y, int at, int c)
+{
+    return vf_load((c < 4 ? u->colour[y][c] : u->radius[y]) + at);
+}
+
+// lamp_in_thicket() of unmix.c for all lanes at once.
+static __attribute__((noinline)) void layers_lamp_in_thicket(const struct hf_unmix_row *u, int x, const int channels,
+                                                             vf thick, vf mean[2][5], vf spread[2])
+{
+    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x), zero = vf_zero(), one = vf_set1(1);
+    const vf own = layers_light_of(u, 3, x), plain = vf_mul(own, vf_set1(HF_UNMIX_DARK));
+    vf most = zero, least = own, dark[2] = {zero, zero}, light[2] = {zero, zero}, bright[2] = {zero, zero};
+    vf lamp[2][5];
+    for (int i = 0; i < 49; i++) {
+        const vf v = vf_load(u->light[i / 7] + x + i % 7 - 3);
+        most = vf_max(v, most);
+        least = vf_min(v, least);
+    }
+    const vm wanted = vm_and(vf_gt(thick, zero), vf_gt(own, vf_mul(least, vf_set1(HF_UNMIX_TIMES))));
+    if (!vm_any(wanted))
+        return;
+    for (int side = 0; side < 2; side++)
+        for (int c = 0; c < 5; c++)
+            lamp[side][c] = zero;
+    for (int i = 0; i < 49; i++) {
+        const int y = i / 7, at = x + i % 7 - 3;
+        const vf v = vf_load(u->light[y] + at), far = vf_div(v, most), square = vf_mul(far, far);
+        const vf fourth = vf_mul(square, square);
+        const vf front = layers_front(middle, slope, vf_load(u->radius[y] + at)), back = vf_sub(one, front);
+        const vf few = vf_mul(vf_set1(0.015625f * hf_unmix_weights[y][i % 7]), layers_dimmed(v, plain));
+        const vf brightest = vf_mul(vf_set1(0.015625f), vf_mul(fourth, fourth));
+        const vf w[2] = {vf_mul(few, front), vf_mul(brightest, back)}, few_back = vf_mul(few, back);
+        dark[0] = vf_add(dark[0], w[0]);
+        dark[1] = vf_add(dark[1], few_back);
+        light[0] = vf_fma(w[0], v, light[0]);
+        light[1] = vf_fma(few_back, v, light[1]);
+        bright[0] = vf_fma(brightest, front, bright[0]);
+        bright[1] = vf_add(bright[1], w[1]);
+        for (int side = 0; side < 2; side++)
+            for (int c = 0; c < 5; c++)
+                if (c < channels || c == 4)
+                    lamp[side][c] = vf_fma(w[side], layers_value(u, y, at, c), lamp[side][c]);
+    }
+    const vm both = vm_and(wanted, vm_and(vf_gt(dark[0], zero), vf_gt(bright[1], zero)));
+    const vf front = vf_div(light[0], dark[0]), back = vf_keep(vf_gt(dark[1], zero), vf_div(light[1], dark[1]));
+    const vf floor = vf_max(vf_max(front, back), vf_set1(1e-30f));
+    const vf times = vf_mul(vf_sub(vf_div(own, floor), vf_set1(HF_UNMIX_TIMES)), vf_set1(0.5f));
+    const vf of_back = vf_div(bright[1], vf_add(bright[0], bright[1]));
+    const vf by = vf_mul(vf_mul(vf_saturate(times), of_back), vf_saturate(vf_mul(thick, vf_set1(2))));
+    for (int side = 0; side < 2; side++) {
+        spread[side] = vf_select(both, vf_fnma(by, spread[side], spread[side]), spread[side]);
+        for (int c = 0; c < 5; c++)
+            if (c < channels || c == 4) {
+                const vf v = vf_div(lamp[side][c], side ? bright[1] : dark[0]);
+                mean[side][c] = vf_select(both, vf_fma(by, vf_sub(v, mean[side][c]), mean[side][c]), mean[side][c]);
+            }
+    }
+}
+
+// What both sides of each pixel are, and how much of that is known. Returns the lanes that have both sides.
+HF_INLINE vm layers_both_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf a0, vf mean[2][5],
+                               vf spread[2], vf *known)
+{
+    const vf zero = vf_zero(), one = vf_set1(1), told = vf_sub(vf_add(a0, a0), one);
+    vf weight[2];
+    layers_sides(u, x, channels, zero, weight, mean, spread);
+    const vf unsure = vf_sub(one, vf_saturate(vf_mul(vf_add(weight[0], weight[1]), vf_set1(1 / HF_UNMIX_FAINT))));
+    const vf thick = vf_keep(mixed, vf_mul(unsure, vf_mul(told, told)));
+    const int thicket = vm_any(vf_gt(thick, zero));
+    if (thicket)
+        layers_sides_in_thicket(u, x, channels, thick, weight, mean, spread);
     const vf both_weigh = vf_add(weight[0], weight[1]), little = vf_mul(vf_set1(HF_UNMIX_LEAN), both_weigh);
-    *known = vf_min(vf_mul(both_weigh, vf_set1(1 / HF_UNMIX_FAINT)), vf_set1(1));
-    mixed = vm_and(mixed, vf_gt(both_weigh, vf_zero()));
+    *known = vf_min(vf_mul(both_weigh, vf_set1(1 / HF_UNMIX_FAINT)), one);
+    mixed = vm_and(mixed, vf_gt(both_weigh, zero));
     const vm lacks = vm_and(mixed, vf_lt(vf_min(weight[0], weight[1]), little));
     if (vm_any(lacks))
         layers_complete(u, x, channels, lacks, weight, little, mean, spread);
+    if (thicket)
+        layers_lamp_in_thicket(u, x, channels, thick, mean, spread);
     return mixed;
 }
 
@@ -231,9 +314,9 @@ HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const in
 {
     vf mean[2][5], spread[2], known;
     layers_prepare(u, x, channels);
-    mixed = layers_sides(u, x, channels, mixed, mean, spread, &known);
     const vf own = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
     const vf a0 = layers_front(vf_load(u->middle + x), vf_load(u->slope + x), own);
+    mixed = layers_both_sides(u, x, channels, mixed, a0, mean, spread, &known);
     const vf by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known), lamp = layers_lit(u, x, mixed, mean);
     vf behind, a = layers_share(u, x, channels, a0, mean, spread, &behind);
     a = vf_fma(lamp, vf_sub(vf_min(a, vf_set1(HF_UNMIX_RIM)), a), a);
