@@ -204,10 +204,10 @@ static void sides(const struct hf_unmix_row *u, int x, float mixed, float weight
         spread[side] = finish(u->channels, counted[side], spread[side], mean[side]);
 }
 
-// In a thicket, where no sure pixel tells, a lamp behind it would be taken for the front where the front is nearer the
-// pixel's middle. So where a pixel is far brighter than the dark ones of both sides, the means become those of a lamp: the
-// front's is that of its dark pixels, the back's that of its brightest ones, as far as the brightest pixels are the back's.
-// thick: how much of this there is, 0 to 1.
+// In a thicket no sure pixel says what the front's colour is, so a lamp behind it would pass for the front wherever the depth
+// sample is the front's. Where the pixel is far brighter than the dark pixels of both sides, the means become those of a lamp:
+// the front's is that of its dark pixels, the back's that of its brightest ones. They do so as far as the brightest pixels are
+// the back's, and as far as this is a thicket (thick, 0 to 1).
 static void lamp_in_thicket(const struct hf_unmix_row *u, int x, float thick, float mean[2][5], float spread[2])
 {
     const float own = light_of(u, 3, x), plain = own * HF_UNMIX_DARK;

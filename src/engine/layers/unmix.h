@@ -44,8 +44,8 @@
 #define HF_UNMIX_LAMP 1.5f
 #define HF_UNMIX_PIXELS 7
 #define HF_UNMIX_RIM 0.75f
-// The same in a thicket, where a pixel more than TIMES as bright as the dark pixels of both sides shows a lamp. Dark are
-// those below DARK of its own light.
+// In a thicket a pixel more than TIMES as bright as the dark pixels of both sides begins to count as a lamp, from TIMES + 2 on
+// wholly. Pixels brighter than DARK of its own light are dimmed in the means of the dark ones.
 #define HF_UNMIX_TIMES 2
 #define HF_UNMIX_DARK 0.125f
 
