@@ -42,7 +42,7 @@ HF_INLINE void fixed_runs(const int r, vf *h)
 {
     vf *sum = h + FIXED_R + 1;
     sum[0] = h[0];
-#pragma GCC unroll 8
+    HF_UNROLL(8)
     for (int j = 1; j < r; j++)
         sum[j] = vf_add(sum[j - 1], h[j]);
 }
@@ -67,7 +67,7 @@ HF_INLINE void fixed_pairs(const float *p, const int r, vf *h)
     PAIR(8);
 #undef PAIR
 #else
-#pragma GCC unroll 8
+    HF_UNROLL(8)
     for (int j = 1; j <= r; j++)
         h[j] = vf_add(vf_load(p - j), vf_load(p + j));
 #endif
@@ -85,7 +85,7 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
                        const int disc)
 {
     int n = 0;
-#pragma GCC unroll 8
+    HF_UNROLL(8)
     for (int i = 0; i < k; i++)
         n += __builtin_popcount(rows[i] & 0xfff) + (rows[i] >> 12 != 0);
     vf sum = vf_zero();
@@ -96,7 +96,7 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
     }
     if (HF_FUSED && !disc && k == 0) {
         vf even = h[2];
-#pragma GCC unroll 4
+        HF_UNROLL(4)
         for (int i = 4; i <= r; i += 2)
             even = vf_add(even, h[i]);
         return vf_fma(fixed_weight(weight, 0), h[0], vf_mul(fixed_weight(weight, 1), even));
@@ -106,7 +106,7 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
         j++;
         n++;
     }
-#pragma GCC unroll 9
+    HF_UNROLL(9)
     for (; j <= r; j++)
         if (rows[k] >> j & 1)
             sum = vf_fma(fixed_weight(weight, n++), h[j], sum);
@@ -123,7 +123,7 @@ HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, con
         fixed_runs(r, h);
     __builtin_prefetch(in + 2 * VF_N);
     const vf axis = disc ? vf_zero() : vf_mul(fixed_weight(weight, 1), h[0]);
-#pragma GCC unroll 8
+    HF_UNROLL(8)
     for (int k = r; k >= 1; k--)
         if (k >= d && k - d < height) {
             float *p = out + (k - d) * stride;
@@ -140,7 +140,7 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, c
                             const float *in, ptrdiff_t in_stride, float *out, ptrdiff_t out_stride, int height)
 {
     vf sums[2 * FIXED_R + 1];
-#pragma GCC unroll 17
+    HF_UNROLL(17)
     for (int i = 0; i <= 2 * r; i++)
         sums[i] = i > r && i - r - 1 < height ? vf_load(out + (i - r - 1) * out_stride) : vf_zero();
     for (int y = 0; y < height; y++) {
@@ -151,19 +151,19 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, c
             fixed_runs(r, h);
         __builtin_prefetch(p + 2 * VF_N);
         const vf axis = disc ? vf_zero() : vf_mul(fixed_weight(weight, 1), h[0]);
-#pragma GCC unroll 9
+        HF_UNROLL(9)
         for (int k = r; k >= 0; k--) {
             row[k] = fixed_sum(rows, k, r, h, weight, axis, disc);
             sums[r - k] = vf_add(sums[r - k + 1], row[k]);
             if (k == r && y >= r)
                 vf_store(out + (y - r) * out_stride, disc ? vf_mul(sums[0], scale) : sums[0]);
         }
-#pragma GCC unroll 8
+        HF_UNROLL(8)
         for (int k = 1; k < r; k++)
             sums[r + k] = vf_add(sums[r + k + 1], row[k]);
         sums[2 * r] = row[r];
     }
-#pragma GCC unroll 8
+    HF_UNROLL(8)
     for (int i = 1; i <= r; i++)
         if (height - 1 - r + i >= 0)
             vf_store(out + (height - 1 - r + i) * out_stride, sums[i]);

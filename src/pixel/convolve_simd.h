@@ -25,13 +25,13 @@ struct convolve_term {
 HF_INLINE void row_sum(const struct convolve_term *term, const struct convolve_term *end, const int s, const float *h,
                        vf *sum)
 {
-#pragma GCC unroll 16
+    HF_UNROLL(16)
     for (int v = 0; v < s; v++)
         sum[v] = vf_zero();
     for (; term < end; term++) {
         const vf w = vf_set1(term->weight);
         const char *p = (const char *)h + term->offset;
-#pragma GCC unroll 16
+        HF_UNROLL(16)
         for (int v = 0; v < s; v++)
             sum[v] = vf_fma(w, vf_load(p + v * (int)sizeof(vf)), sum[v]);
     }
@@ -40,7 +40,7 @@ HF_INLINE void row_sum(const struct convolve_term *term, const struct convolve_t
 // Add a row sum to an output row. scale: NULL, or that of a row that is then complete.
 HF_INLINE void row_add(float *out, const int s, const vf *sum, const float *scale)
 {
-#pragma GCC unroll 16
+    HF_UNROLL(16)
     for (int v = 0; v < s; v++) {
         const vf all = vf_add(vf_load(out + v * VF_N), sum[v]);
         vf_store(out + v * VF_N, scale ? vf_mul(all, vf_set1(*scale)) : all);
@@ -62,14 +62,14 @@ HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, 
 {
     if (!symmetric) {
         for (int j = -rx; j <= rx; j++, h += s * VF_N)
-#pragma GCC unroll 16
-            for (int v = 0; v < s; v++)
-                vf_store(h + v * VF_N, vf_load(p + v * VF_N + j));
+            HF_UNROLL(16)
+        for (int v = 0; v < s; v++)
+            vf_store(h + v * VF_N, vf_load(p + v * VF_N + j));
         return;
     }
     vf sum[CONVOLVE_S];
     float *run = h + (rx + 1) * s * VF_N;
-#pragma GCC unroll 16
+    HF_UNROLL(16)
     for (int v = 0; v < s; v++) {
         vf_store(h + v * VF_N, sum[v] = vf_load(p + v * VF_N));
         if (runs)
@@ -78,7 +78,7 @@ HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, 
     for (int j = 1; j <= rx; j++) {
         h += s * VF_N;
         run += s * VF_N;
-#pragma GCC unroll 16
+        HF_UNROLL(16)
         for (int v = 0; v < s; v++) {
             const vf pair = vf_add(vf_load(p + v * VF_N - j), vf_load(p + v * VF_N + j));
             vf_store(h + v * VF_N, pair);
@@ -158,13 +158,13 @@ enum { CONVOLVE_TWO = VF_N == 16 };
 HF_INLINE void row_sums(const struct convolve_term *term, const struct convolve_term *end, const int s, const float *h,
                         ptrdiff_t next, vf *a, vf *b)
 {
-#pragma GCC unroll 16
+    HF_UNROLL(16)
     for (int v = 0; v < s; v++)
         a[v] = b[v] = vf_zero();
     for (; term < end; term++) {
         const vf w = vf_set1(term->weight);
         const char *p = (const char *)h + term->offset, *q = p + next;
-#pragma GCC unroll 16
+        HF_UNROLL(16)
         for (int v = 0; v < s; v++) {
             a[v] = vf_fma(w, vf_load(p + v * (int)sizeof(vf)), a[v]);
             b[v] = vf_fma(w, vf_load(q + v * (int)sizeof(vf)), b[v]);
@@ -174,7 +174,7 @@ HF_INLINE void row_sums(const struct convolve_term *term, const struct convolve_
 
 HF_INLINE void row_add_two(float *out, const int s, const vf *a, const vf *b, const float *scale)
 {
-#pragma GCC unroll 16
+    HF_UNROLL(16)
     for (int v = 0; v < s; v++) {
         const vf all = vf_add(vf_add(vf_load(out + v * VF_N), a[v]), b[v]);
         vf_store(out + v * VF_N, scale ? vf_mul(all, vf_set1(*scale)) : all);
@@ -188,7 +188,7 @@ HF_INLINE void two_rows(const struct hf_taps *t, const struct convolve_out *o, i
 {
     const ptrdiff_t next = (2 * t->rx + 2) * s * (ptrdiff_t)sizeof(vf);
     vf a_before[CONVOLVE_S], b_before[CONVOLVE_S];
-#pragma GCC unroll 16
+    HF_UNROLL(16)
     for (int v = 0; v < s; v++)
         a_before[v] = b_before[v] = vf_zero();
     for (int k = 0; k <= t->ry; k++) {
@@ -201,7 +201,7 @@ HF_INLINE void two_rows(const struct hf_taps *t, const struct convolve_out *o, i
             row_add_two(below, s, a, b_before, NULL);
         if (k && above)
             row_add_two(above, s, a_before, b, k == t->ry ? &t->scale : NULL);
-#pragma GCC unroll 16
+        HF_UNROLL(16)
         for (int v = 0; v < s; v++) {
             a_before[v] = a[v];
             b_before[v] = b[v];
@@ -217,9 +217,9 @@ HF_INLINE void two_rows(const struct hf_taps *t, const struct convolve_out *o, i
 HF_INLINE void out_begin(const struct convolve_out *o, int y, const int s)
 {
     if (y < o->height)
-#pragma GCC unroll 16
-        for (int v = 0; v < s; v++)
-            vf_store(o->row + y * o->stride + v * VF_N, vf_zero());
+        HF_UNROLL(16)
+    for (int v = 0; v < s; v++)
+        vf_store(o->row + y * o->stride + v * VF_N, vf_zero());
 }
 
 // s vectors of columns. Each input row is spread over the output rows it reaches: those are sums that grow from top to
@@ -295,7 +295,7 @@ HF_INLINE float *job_out(const struct convolve_job *j, int i, int from, int x)
 HF_INLINE int row_needed(const float *need, const int s)
 {
     vm any = vf_gt(vf_load(need), vf_zero());
-#pragma GCC unroll 16
+    HF_UNROLL(16)
     for (int v = 1; v < s; v++)
         any = vm_or(any, vf_gt(vf_load(need + v * VF_N), vf_zero()));
     return vm_any(any);
@@ -313,7 +313,7 @@ HF_INLINE int row_needed_around(const float *need, int reach, const int s)
 HF_INLINE int row_full(const float *full, float gain, const int s)
 {
     vf least = vf_load(full);
-#pragma GCC unroll 16
+    HF_UNROLL(16)
     for (int v = 1; v < s; v++)
         least = vf_min(vf_load(full + v * VF_N), least);  // of NaN the other
     return !vm_any(vf_lt(vf_mul(vf_set1(gain), least), vf_set1(1)));

@@ -251,7 +251,7 @@ HF_INLINE void blur_column_13(const int bytes, const char *in, ptrdiff_t stride,
     for (int y = 0; y < 6; y++)
         a[y] = narrow_load(bytes, in + (y + 6) * stride);
     for (int y = 0; y < n; y += ROWS) {
-#pragma GCC unroll 8
+        HF_UNROLL(8)
         for (int k = 0; k < ROWS; k++) {
             if (y + k == n)
                 return;

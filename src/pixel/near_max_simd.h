@@ -217,13 +217,13 @@ HF_INLINE void max_column(const int bytes, const char *in, ptrdiff_t stride, cha
     for (int y = rows; y <= 2 * m; y++)
         window = narrow_max(bytes, window, vi_load(in + y * stride));
     up[rows - 1] = window;
-#pragma GCC unroll 8
+    HF_UNROLL(8)
     for (int y = rows - 2; y >= 0; y--)
         up[y] = window = narrow_max(bytes, window, vi_load(in + y * stride));
     vi_store(out, window);
     if (rows > 1)
         window = vi_load(in + (2 * m + 1) * stride);
-#pragma GCC unroll 8
+    HF_UNROLL(8)
     for (int y = 1; y < rows; y++) {
         if (y > 1)
             window = narrow_max(bytes, window, vi_load(in + (2 * m + y) * stride));

@@ -109,7 +109,7 @@ HF_INLINE void far_weights(const struct field_rows *coc_rows, const enum hf_divi
             far_weights_same(coc[i / 2][i % 2], g, i / 2, i % 2, w[i / 2][i % 2]);
         return;
     }
-#pragma GCC unroll 4
+    HF_UNROLL(4)
     for (int i = 0; i < 2 * rows; i++) {
         far_weights_block(division, 0, coc[i / 2][i % 2], g, i / 2, i % 2, w[i / 2][i % 2]);
         if (division != HF_DIVISION_EXACT)
@@ -214,7 +214,7 @@ HF_INLINE void blend_block(const struct composite_rows *r, const int rows, const
         far_weights(&r->far_coc, division, rows, kind & BLEND_FAR_DIFFERS, x, vf_set1(r->blend), b->coc, w, t);
     if (far && faithful)
         blend_far_faithful(r, division, channels, x, vf_set1(r->blend), b);
-#pragma GCC unroll 4
+    HF_UNROLL(4)
     for (int c = 0; c < channels; c++) {
         vf up[2][2] = {{vf_zero()}};
         if (near)

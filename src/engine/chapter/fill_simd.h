@@ -43,14 +43,14 @@ HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *w
 {
     vf left[4], middle[4], near = vf_load(want);
     vm wanted = vf_gt(near, vf_zero());
-#pragma GCC unroll 4
+    HF_UNROLL(4)
     for (int c = 0; c < channels; c++)
         fill_max_vector(column_max(in[c] - 1, stride), column_max(in[c], stride), column_max(in[c] + 1, stride), in[c],
                         wanted, out[c]);
     if (!faithful)
         fill_max_begins(in, out, 0, near, channels);
     int x = VF_N - (first & (VF_N - 1));
-#pragma GCC unroll 4
+    HF_UNROLL(4)
     for (int c = 0; c < channels && x < n; c++) {
         left[c] = column_max(in[c] + x - VF_N, stride);
         middle[c] = column_max(in[c] + x, stride);
@@ -58,7 +58,7 @@ HF_INLINE void fill_max_row(float *const in[4], ptrdiff_t stride, const float *w
     for (; x < n; x += VF_N) {
         near = vf_load(want + x);
         wanted = vf_gt(near, vf_zero());
-#pragma GCC unroll 4
+        HF_UNROLL(4)
         for (int c = 0; c < channels; c++) {
             const vf right = column_max(in[c] + x + VF_N, stride);
             fill_max_vector(vf_align(left[c], middle[c], VF_N - 1), middle[c], vf_align(middle[c], right, 1), in[c] + x,

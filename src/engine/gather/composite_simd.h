@@ -37,7 +37,7 @@ HF_INLINE void blend_block(const struct composite_rows *r, const int rows, const
 {
     const int bicubic = how & HOW_BICUBIC, packed = how & HOW_PACKED;
     const vf sixteenth = vf_set1(1 / 16.0f);
-#pragma GCC unroll 4
+    HF_UNROLL(4)
     for (int c = 0; c < channels; c++) {
         vf up[2][2] = {{vf_zero()}};
         for (int i = 0; i < 2 * rows && packed; i++)

@@ -113,7 +113,7 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
     const float *mean = first ? hf_at(in->weight, in->mean, x, y) : NULL;
     for (int c = 0; c < channels; c++)
         colour[c] = hf_at(in->colour, c, x, y);
-#pragma GCC unroll 4
+    HF_UNROLL(4)
     for (int i = 0; i < rows; i++) {
         for (int c = 0; c < channels; c++)
             s[i].colour[c] = vf_zero();
@@ -129,7 +129,7 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
         const vf weight = vf_once(vf_load(a + weight_at));
         if (first)
             over = vf_once(vf_load(mean + weight_at));
-#pragma GCC unroll 4
+        HF_UNROLL(4)
         for (int i = 0; i < rows; i++)
             if (p->rows >> i & 1) {
                 const vf b = vf_set1(p->whole[i]);
@@ -152,7 +152,7 @@ HF_INLINE void hex_line(const struct hf_hexagon_field *in, const struct hex_run 
         const vf weight = vf_once(vf_load(a + weight_at));
         if (first)
             over = vf_once(vf_load(mean + weight_at));
-#pragma GCC unroll 4
+        HF_UNROLL(4)
         for (int i = 0; i < rows; i++)
             if (p->rows >> i & 1) {
                 vf w = vf_sub(q, vf_set1(p->c[i]));
