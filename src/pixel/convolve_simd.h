@@ -61,10 +61,11 @@ HF_INLINE void prefetch_row(const float *p, int floats)
 HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, const int s, float *h)
 {
     if (!symmetric) {
-        for (int j = -rx; j <= rx; j++, h += s * VF_N)
+        for (int j = -rx; j <= rx; j++, h += s * VF_N) {
             HF_UNROLL(16)
-        for (int v = 0; v < s; v++)
-            vf_store(h + v * VF_N, vf_load(p + v * VF_N + j));
+            for (int v = 0; v < s; v++)
+                vf_store(h + v * VF_N, vf_load(p + v * VF_N + j));
+        }
         return;
     }
     vf sum[CONVOLVE_S];
@@ -216,10 +217,11 @@ HF_INLINE void two_rows(const struct hf_taps *t, const struct convolve_out *o, i
 
 HF_INLINE void out_begin(const struct convolve_out *o, int y, const int s)
 {
-    if (y < o->height)
+    if (y < o->height) {
         HF_UNROLL(16)
-    for (int v = 0; v < s; v++)
-        vf_store(o->row + y * o->stride + v * VF_N, vf_zero());
+        for (int v = 0; v < s; v++)
+            vf_store(o->row + y * o->stride + v * VF_N, vf_zero());
+    }
 }
 
 // s vectors of columns. Each input row is spread over the output rows it reaches: those are sums that grow from top to
