@@ -89,97 +89,92 @@ static void farthest(void)
     CHECK_INT(hf_unmix_complete(&row, AT, weight, mean, spread), 0);
 }
 
+// The surroundings of the pixel in the middle, and both of its samples, as the kernel writes them.
+enum { BLOCK = 9, MIDDLE = 4, ROWS = 7 };
+struct block {
+    float radius[BLOCK], sure[BLOCK], middle[BLOCK], slope[BLOCK], colour[ROWS][3][BLOCK], out[2][6][BLOCK];
+};
+
+static void unmix_middle(struct block *b)
+{
+    uint8_t any[1] = {0};
+    struct hf_unmix_row row = {.channels = 3, .middle = b->middle + MIDDLE, .slope = b->slope + MIDDLE, .any = any};
+    for (int y = 0; y < ROWS; y++) {
+        row.radius[y] = b->radius + MIDDLE;
+        row.sure[y] = b->sure + MIDDLE;
+        for (int c = 0; c < 3; c++)
+            row.colour[y][c] = b->colour[y][c] + MIDDLE;
+    }
+    for (int i = 0; i < 6; i++) {
+        row.seen[i] = b->out[0][i] + MIDDLE;
+        row.mixed[i] = b->out[1][i] + MIDDLE;
+    }
+    hf_layers_unmix_c(&row, 1);
+}
+
 // A bar covers two fifths of a pixel. The rest of the pixel is dark, and the wall beside it bright: there ends the dark part
 // of a pattern. The pixel's middle, and so its depth, is the wall's, so the bar covers at most half of the pixel. With that
 // share the means leave v - (bar + bright) / 2 = (6 dark - bar - 5 bright) / 10 unexplained, of which the back gets one and a
 // half: it is dark + (bright - dark) / 4 + 3 (dark - bar) / 20.
 static void sliver(void)
 {
-    enum { N = 9, AT = 4, ROWS = 7 };
     static const float bar[3] = {0.4f, 0.12f, 0.08f}, dark[3] = {0.25f, 0.1f, 0.1f}, bright[3] = {0.9f, 0.85f, 0.3f};
-    float radius[N], sure[N], middle[N] = {0}, slope[N], colour[3][N], out[2][6][N] = {{{0}}};
-    struct hf_unmix_row row = {.channels = 3, .middle = middle + AT, .slope = slope + AT};
-    uint8_t any[1] = {0};
-    row.any = any;
-    for (int x = 0; x < N; x++) {
-        radius[x] = x < AT ? -8 : 8;
-        sure[x] = x < AT - 1 || x > AT;
-        slope[x] = 2.0f / 16;
-        for (int c = 0; c < 3; c++)
-            colour[c][x] = x < AT ? bar[c] : x > AT ? bright[c] : 0.4f * bar[c] + 0.6f * dark[c];
+    struct block b = {.radius = {0}};
+    for (int x = 0; x < BLOCK; x++) {
+        b.radius[x] = x < MIDDLE ? -8 : 8;
+        b.sure[x] = x < MIDDLE - 1 || x > MIDDLE;
+        b.slope[x] = 2.0f / 16;
+        for (int y = 0; y < ROWS; y++)
+            for (int c = 0; c < 3; c++)
+                b.colour[y][c][x] = x < MIDDLE ? bar[c] : x > MIDDLE ? bright[c] : 0.4f * bar[c] + 0.6f * dark[c];
     }
-    for (int y = 0; y < ROWS; y++) {
-        row.radius[y] = radius + AT;
-        row.sure[y] = sure + AT;
-        for (int c = 0; c < 3; c++)
-            row.colour[y][c] = colour[c] + AT;
-    }
-    for (int i = 0; i < 6; i++) {
-        row.seen[i] = out[0][i] + AT;
-        row.mixed[i] = out[1][i] + AT;
-    }
-    hf_layers_unmix_c(&row, 1);
-    CHECK_MSG(out[1][4][AT] >= 0.5f, "the back covers %g of the pixel", (double)out[1][4][AT]);
+    unmix_middle(&b);
+    CHECK_MSG(b.out[1][4][MIDDLE] >= 0.5f, "the back covers %g of the pixel", (double)b.out[1][4][MIDDLE]);
     for (int c = 0; c < 3; c++) {
-        const double off = fabs(out[1][c][AT] - dark[c]),
+        const double back = b.out[1][c][MIDDLE], off = fabs(back - dark[c]),
                      most = fabs(bright[c] - dark[c]) / 4 + 3 * fabs(dark[c] - bar[c]) / 20;
-        CHECK_MSG(off <= most + 8 * FLT_EPSILON, "channel %d of the back is %g, not %g", c, (double)out[1][c][AT],
-                  (double)dark[c]);
+        CHECK_MSG(off <= most + 8 * FLT_EPSILON, "channel %d of the back is %g, not %g", c, back, (double)dark[c]);
     }
 }
 
 // Hairs a pixel wide, of one colour, stand a pixel apart before a wall, and no pixel is sure. Either the middle pixel is the
 // wall's, and a hair covers two fifths of it; or, lit, it is a hair's that covers half of a lamp of 60, which shines in the
 // wall's pixel beside it.
-enum { HAIRS = 9, BESIDE = 4 };
-struct hairs {
-    float radius[HAIRS], sure[HAIRS], middle[HAIRS], slope[HAIRS], colour[7][HAIRS], out[2][6][HAIRS];
-    uint8_t any[1];
-};
-
-static void make_hairs(struct hairs *h, int lit)
+static struct block hairs(int lit)
 {
-    *h = (struct hairs){.any = {0}};
-    struct hf_unmix_row row = {.channels = 3, .middle = h->middle + BESIDE, .slope = h->slope + BESIDE, .any = h->any};
-    for (int x = 0; x < HAIRS; x++) {
+    struct block b = {.radius = {0}};
+    for (int x = 0; x < BLOCK; x++) {
         const int hair = x % 2 != lit;
-        h->radius[x] = hair ? -2 : 8;
-        h->middle[x] = 3;
-        h->slope[x] = 2.0f / 10;
-        for (int y = 0; y < 7; y++)
-            h->colour[y][x] = hair ? 0.1f : 0.9f;
+        b.radius[x] = hair ? -2 : 8;
+        b.middle[x] = 3;
+        b.slope[x] = 2.0f / 10;
+        for (int y = 0; y < ROWS; y++)
+            for (int c = 0; c < 3; c++)
+                b.colour[y][c][x] = hair ? 0.1f : 0.9f;
     }
-    h->colour[3][BESIDE] = lit ? 30 : 0.4f * 0.1f + 0.6f * 0.9f;
-    if (lit)
-        h->colour[3][BESIDE + 1] = 60;
-    for (int y = 0; y < 7; y++) {
-        row.radius[y] = h->radius + BESIDE;
-        row.sure[y] = h->sure + BESIDE;
-        for (int c = 0; c < 3; c++)
-            row.colour[y][c] = h->colour[y] + BESIDE;
+    for (int c = 0; c < 3; c++) {
+        b.colour[3][c][MIDDLE] = lit ? 30 : 0.4f * 0.1f + 0.6f * 0.9f;
+        if (lit)
+            b.colour[3][c][MIDDLE + 1] = 60;
     }
-    for (int i = 0; i < 6; i++) {
-        row.seen[i] = h->out[0][i] + BESIDE;
-        row.mixed[i] = h->out[1][i] + BESIDE;
-    }
-    hf_layers_unmix_c(&row, 1);
+    unmix_middle(&b);
+    return b;
 }
 
 static void thicket(void)
 {
-    struct hairs h;
-    make_hairs(&h, 0);
+    const struct block dark = hairs(0), lit = hairs(1);
     // Both means are exact. The share by depth, 0, counts a thousandth of the squares of both colours, 0.82, to the 0.64 of
     // their squared distance.
-    const float hair = h.out[0][4][BESIDE];
+    const float hair = dark.out[0][4][MIDDLE];
     CHECK_MSG(hair > 0.4f * (1 - 0.0014f) && hair < 0.4f + 8 * FLT_EPSILON, "a hair covers %g of a pixel, not 0.4",
               (double)hair);
-    CHECK_MSG(h.out[0][5][BESIDE] == -2 && h.out[1][5][BESIDE] == 8, "radii %g and %g, not -2 and 8",
-              (double)h.out[0][5][BESIDE], (double)h.out[1][5][BESIDE]);
+    CHECK_MSG(dark.out[0][5][MIDDLE] == -2 && dark.out[1][5][MIDDLE] == 8, "radii %g and %g, not -2 and 8",
+              (double)dark.out[0][5][MIDDLE], (double)dark.out[1][5][MIDDLE]);
     // The lamp's own pixel is 256 times as bright as the middle one to the eighth power, so all but a 257th of the means is
     // replaced. The hair's mean before was at most that of the pixels beside it, 0.1, so less than a 30th of the light stays.
-    make_hairs(&h, 1);
-    const float kept = h.out[0][0][BESIDE] * h.out[0][4][BESIDE], back = h.out[1][0][BESIDE] * h.out[1][4][BESIDE];
+    const float kept = lit.out[0][0][MIDDLE] * lit.out[0][4][MIDDLE];
+    const float back = lit.out[1][0][MIDDLE] * lit.out[1][4][MIDDLE];
     CHECK_MSG(kept < 1, "%g of a lamp's light stay with a hair before it", (double)kept);
     CHECK_MSG(fabsf(kept + back - 30) < 1, "the pixel's light is %g, not 30", (double)(kept + back));
 }
