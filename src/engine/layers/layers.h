@@ -128,6 +128,7 @@ struct hf_layers {
     int channels;                     // of colour, 3 or 4 with alpha
     float largest;                    // value of a sample; larger ones are clamped to it
     int slices, levels;               // levels of the search for hidden samples; 0: none are looked for
+    int focus;                        // the slice of radius 0
     struct hf_slice *slice, *behind;  // of visible samples, of hidden samples
     // A sample between slice `last`, the last of the middle stack, and the next slice lies partly in the far stack.
     // These two pseudo-slices, for visible and for hidden samples, draw the part that the middle holds. last < 0: there

@@ -238,6 +238,7 @@ static float largest_sample(const struct hf_layers *l)
 void hf_layers_make_slices(struct hf_layers *l)
 {
     const int near = slices_of(l, -l->nearest), far = slices_of(l, l->farthest);
+    l->focus = near;
     l->slices = near + 1 + far;
     struct hf_slice *at = l->tables.data;
     for (int g = 0; g < l->groups; g++, at += (2 + l->parts) * l->slices + 2)
@@ -275,9 +276,22 @@ void hf_layers_use_group(struct hf_layers *l, int group)
     l->group_used = group;
 }
 
-double hf_layers_slice_radius(const struct hf_layers *l, int group, int i)
+// Whether a slice is the first of two that views of the near stack take for one; the second is farther from the focus. Their
+// number is counted from the focus, so a nearer sample elsewhere changes no pair.
+static int begins_pair(const struct hf_layers *l, int i)
 {
-    const float r = l->group[group][i].radius;
+    const int n = l->focus - i;
+    return l->set.near_only && n > 0 && n % 2 && l->slice[i].level > 0;
+}
+
+int hf_layers_view_slice(const struct hf_layers *l, int i)
+{
+    return begins_pair(l, i + 1) ? i + 1 : i;
+}
+
+double hf_layers_view_radius(const struct hf_layers *l, int group, int i)
+{
+    const float own = l->group[group][i].radius, r = begins_pair(l, i) ? (own - next_radius(&l->set, -own)) / 2 : own;
     return (double)r * (1 + (double)shift_of(l, group, r));
 }
 

@@ -15,8 +15,10 @@ int hf_layers_make_shapes(struct hf_layers *l, const struct hf_image *picture, c
 // Make the frame's slices in l->tables, and use those of the first group.
 void hf_layers_make_slices(struct hf_layers *l);
 void hf_layers_use_group(struct hf_layers *l, int group);
-// The radius of a group's slice of visible samples, with its chromatic aberration.
-double hf_layers_slice_radius(const struct hf_layers *l, int group, int i);
+// The slice whose planes hold a slice's samples for views; and by which radius views displace them, with a group's chromatic
+// aberration. In the near stack two slices share planes: their points of the lens lie farther apart than the two.
+int hf_layers_view_slice(const struct hf_layers *l, int i);
+double hf_layers_view_radius(const struct hf_layers *l, int group, int i);
 // A row of the place of each visible sample among the slices, from 0 for the nearest: 2.25 is a quarter of the way, by radius,
 // from slice 2 to slice 3.
 void hf_layers_show_slices(const void *own, const struct hf_frame *f, int y, float *row);

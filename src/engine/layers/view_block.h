@@ -10,9 +10,10 @@
 struct hf_slice_plane {
     float *at;
     ptrdiff_t row, channel;
-    int level, around;  // around: tiles on each side of the block
-    int any;            // the slice reaches the block
-    uint64_t *reached;  // of each row of tiles, from one before the block on: a bit for each tile, likewise
+    int level, around;      // around: tiles on each side of the block
+    int any;                // the slice reaches the block
+    struct hf_rect filled;  // the part that holds samples, in its own pixels
+    uint64_t *reached;      // of each row of tiles, from one before the block on: a bit for each tile, likewise
 };
 
 struct hf_view_block {

@@ -3,14 +3,18 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/layers/slices.h"
 #include "engine/layers/view_block.h"
 
-enum { SPARE = 32 };  // floats after a row, which runs of pixels may pass
+enum {
+    SPARE = 32,        // floats after a row, which runs of pixels may pass
+    FAR_OFF = 1 << 24  // farther than any pixel of a plane
+};
 
-// How far a slice's blur goes, in pixels.
+// How far views displace a slice, in pixels.
 static double radius_of(const struct hf_layers *l, int slice)
 {
-    return fabs((double)l->slice[slice].radius) * hf_layers_view_width(l);
+    return fabs(hf_layers_view_radius(l, l->group_used, slice)) * hf_layers_view_width(l);
 }
 
 // log2 of the pixel size of a slice's planes. A point of the lens stands for what lies around it, so a slice of the near stack
@@ -35,7 +39,7 @@ static size_t shape_plane(const struct hf_view_block *b, int slice, struct hf_sl
     return (size_t)p->row * (size_t)((b->c.rows + 2 * p->around) * TILE >> p->level);
 }
 
-// Whether views show a slice.
+// Whether views have planes for a slice, its own or one before it.
 static int is_in(const struct hf_layers *l, int slice)
 {
     return radius_of(l, slice) <= (double)hf_layers_view_most(l) &&
@@ -54,7 +58,7 @@ void hf_layers_place_planes(struct hf_view_block *b, struct hf_scratch *m)
     b->memory = hf_layers_take(m, 0, 0);
     for (int i = 0; i < l->slices; i++) {
         struct hf_slice_plane p;
-        m->used += is_in(l, i) ? (shape_plane(b, i, &p) + 15) & ~(size_t)15 : 0;
+        m->used += is_in(l, i) && hf_layers_view_slice(l, i) == i ? (shape_plane(b, i, &p) + 15) & ~(size_t)15 : 0;
     }
 }
 
@@ -82,6 +86,8 @@ static void take_row(void *cookie, const float *in, ptrdiff_t channel, int x, in
     if (from >= to)
         return;
     float *out = p->at + y * p->row + from * (1 << level);
+    p->filled = (struct hf_rect){hf_min(from * (1 << level), p->filled.x0), hf_min(y, p->filled.y0),
+                                 hf_max(to * (1 << level), p->filled.x1), hf_max(y + 1, p->filled.y1)};
     in += from - x;
     for (int c = 0; c < channels; c++)
         add_row(out + (c + 1) * p->channel, in + c * channel, to - from, level);
@@ -114,31 +120,33 @@ static int reached(const struct hf_view_block *b, struct hf_slice_plane *p)
     return any != 0;
 }
 
-// Whether samples of a kind reach the block; begins the planes if they are the first.
-static int reach(struct hf_view_block *b, int i, enum hf_kind kind, const struct hf_slice *s, size_t *used)
+// Whether samples of a kind reach the block; begins the planes, those of slice `at`, if they are the first.
+static int reach(struct hf_view_block *b, int i, int at, enum hf_kind kind, const struct hf_slice *s, size_t *used)
 {
-    struct hf_slice_plane *p = &b->plane[i];
+    struct hf_slice_plane *p = &b->plane[at];
     if (!hf_layers_mark_used(&b->c, i, kind) || !hf_layers_mark_touched(&b->c, s, &b->c.touched) || !reached(b, p))
         return 0;
     if (!p->any) {
-        const size_t n = shape_plane(b, i, p);
+        const size_t n = shape_plane(b, at, p);
         memset(b->memory + *used, 0, sizeof(float) * n);
         p->at = b->memory + *used + (p->around * TILE >> p->level) * p->row + p->around * b->tile;
+        p->filled = (struct hf_rect){FAR_OFF, FAR_OFF, -FAR_OFF, -FAR_OFF};
         *used += (n + 15) & ~(size_t)15;
     }
     return p->any = 1;
 }
 
-// Gather what a slice's planes hold: sums of samples, without their highlights.
+// Add a slice's samples to planes: sums of samples, without their highlights.
 static void gather(struct hf_view_block *b, int i, size_t *used)
 {
     const struct hf_layers *l = b->c.l;
     const struct hf_samples *samples = b->c.samples;
-    struct hf_slice_plane *p = &b->plane[i];
+    const int at = hf_layers_view_slice(l, i);
+    struct hf_slice_plane *p = &b->plane[at];
     struct taker to = {.p = p, .b = b};
-    shape_plane(b, i, p);
+    shape_plane(b, at, p);
     const struct hf_slice seen = slice_of(l, &l->slice[i], p, 0);
-    if (reach(b, i, HF_KIND_SEEN, &seen, used)) {
+    if (reach(b, i, at, HF_KIND_SEEN, &seen, used)) {
         const struct hf_build build = {.s = &seen,
                                        .set = &samples->seen,
                                        .weight = samples->seen.weight,
@@ -149,7 +157,7 @@ static void gather(struct hf_view_block *b, int i, size_t *used)
     }
     const int quads = !l->known && p->level > 0;
     const struct hf_slice behind = slice_of(l, l->known ? &l->slice[i] : &l->behind[i], p, quads);
-    if (reach(b, i, HF_KIND_HIDDEN, &behind, used)) {
+    if (reach(b, i, at, HF_KIND_HIDDEN, &behind, used)) {
         const struct hf_build build = {.s = &behind,
                                        .set = &samples->hidden,
                                        .weight = samples->hidden.weight,
@@ -165,10 +173,9 @@ static void gather(struct hf_view_block *b, int i, size_t *used)
 // and cannot overflow.
 static void divide(const struct hf_view_block *b, const struct hf_slice_plane *p)
 {
-    const int size = TILE >> p->level, first = -p->around * size, rows = (b->c.rows + 2 * p->around) * size,
-              n = (b->c.columns + 2 * p->around) * b->tile;
-    for (int y = first; y < first + rows; y++) {
-        float *w = p->at + y * p->row - p->around * b->tile;
+    const int n = p->filled.x1 - p->filled.x0;
+    for (int y = p->filled.y0; y < p->filled.y1; y++) {
+        float *w = p->at + y * p->row + p->filled.x0;
         for (int c = 1; c <= b->c.l->channels; c++) {
             float *v = w + c * p->channel;
             for (int x = 0; x < n; x++)
@@ -183,15 +190,15 @@ void hf_layers_make_planes(struct hf_view_block *b)
 {
     const struct hf_layers *l = b->c.l;
     size_t used = 0;
+    for (int i = 0; i < l->slices; i++) {
+        b->plane[i].any = 0;
+        memset(b->plane[i].reached, 0, sizeof *b->plane[i].reached * (size_t)(b->c.rows + 2));
+    }
     for (int i = 0; i < l->slices && !hf_stopped(l->stop); i++) {
-        struct hf_slice_plane *p = &b->plane[i];
-        p->any = 0;
-        memset(p->reached, 0, sizeof *p->reached * (size_t)(b->c.rows + 2));
-        if (!is_in(l, i))
-            continue;
-        gather(b, i, &used);
-        if (p->any)
-            divide(b, p);
+        if (is_in(l, i))
+            gather(b, i, &used);
+        if (b->plane[i].any)
+            divide(b, &b->plane[i]);
     }
 }
 

@@ -218,7 +218,7 @@ int hf_layers_make_views(struct hf_layers *l, const struct hf_image *picture, co
     l->lens_reach = farthest_point(l);
     for (int g = 0; g < l->groups; g++)
         for (int i = 0; i < l->slices; i++) {
-            const double pixel = 1 << l->set.near_only, r = hf_layers_slice_radius(l, g, i) / pixel;
+            const double pixel = 1 << l->set.near_only, r = hf_layers_view_radius(l, g, i) / pixel;
             for (int v = 0; v < l->set.views && fabs(r) <= 2 * (double)hf_layers_view_most(l); v++) {
                 l->shift[g][i * l->set.views + v][0] = (int16_t)floor(0.5 - r * l->wide * (double)l->point[g][v][0]);
                 l->shift[g][i * l->set.views + v][1] = (int16_t)floor(0.5 - r * (double)l->point[g][v][1]);
