@@ -138,11 +138,10 @@ static void between_call(const struct world *w, const struct kernels *k, enum ar
     struct hf_hidden_line l = {.steps = 4, .away = {1, 2, 3, 4}};
     float *in[6], *sum[7];
     set_of(w, a, 0, in);
-    memcpy(l.in, in, sizeof in);
     for (int i = 0; i < 8; i++)
         l.side[i / 4][i % 4] = line(w, a, 6 * i) - line(w, a, 0);
     sums_of(w, a, IN, sum);
-    k->layers.between(&l, now.channels, line(w, a, 48), w->n, sum);
+    k->layers.between(&l, l.steps, (const float *const *)in, now.channels, line(w, a, 48), w->n, sum);
 }
 
 static void found_call(const struct world *w, const struct kernels *k, enum arena a)

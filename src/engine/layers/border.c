@@ -3,6 +3,7 @@
 // its own blur. A near sample counts beyond the frame only as far as its surface is seen to go on inside: a surface that is seen
 // half its radius deep counts fully. At odd sizes the last column or row is doubled first, because quads need it.
 #include <math.h>
+#include <string.h>
 
 #include "engine/layers/hidden.h"
 #include "pixel/pass_c.h"
@@ -71,25 +72,36 @@ static void set_row(const struct hf_frame *f, int x, int y, int from_x, int from
     }
 }
 
-// Rows beyond the upper (dy 1) or the lower edge (dy -1), with their corners.
+// The corners beside pixel x of the first or last row, where it is the row's first or last.
+static void set_corners(const struct hf_frame *f, int x, int edge, int from, int around, const float part[2])
+{
+    for (int right = 0; right < 2; right++) {
+        float side[2];
+        if (x != (right ? f->s->width - 1 : 0))
+            continue;
+        parts_of(f, x, edge, right ? -1 : 1, 0, side);
+        const float both[2] = {part[0] * side[0], part[1] * side[1]};
+        for (int y = from; y < from + around; y++)
+            set_row(f, right ? 2 * f->s->half_width : -around, y, x, edge, around, both);
+    }
+}
+
+// Rows beyond the upper (dy 1) or the lower edge (dy -1), with their corners. The first of them is made, and repeated.
 static void set_rows(const struct hf_frame *f, struct hf_rect r, int dy, int around)
 {
     const int edge = dy > 0 ? 0 : f->s->height - 1, from = dy > 0 ? -around : 2 * f->s->half_height,
-              width = f->s->width, end = 2 * f->s->half_width;
-    for (int x = 2 * r.x0; x < hf_min(2 * r.x1, width) && !hf_stopped(f->s->stop); x++) {
-        float part[2], side[2];
+              width = f->s->width, x0 = 2 * r.x0;
+    for (int x = x0; x < hf_min(2 * r.x1, width) && !hf_stopped(f->s->stop); x++) {
+        float part[2];
         parts_of(f, x, edge, 0, dy, part);
-        for (int y = from; y < from + around; y++)
-            set_row(f, x, y, x, edge, x == width - 1 ? end - x : 1, part);
-        for (int right = 0; right < 2; right++) {
-            if (x != (right ? width - 1 : 0))
-                continue;
-            parts_of(f, x, edge, right ? -1 : 1, 0, side);
-            const float both[2] = {part[0] * side[0], part[1] * side[1]};
-            for (int y = from; y < from + around; y++)
-                set_row(f, right ? end : -around, y, x, edge, around, both);
-        }
+        set_row(f, x, from, x, edge, x == width - 1 ? 2 * f->s->half_width - x : 1, part);
+        set_corners(f, x, edge, from, around, part);
     }
+    static const int at[3][2] = {{HF_LAYERS_BUF_SEEN_AT, 0}, {HF_LAYERS_BUF_SEEN_AT, 2}, {HF_LAYERS_BUF_MIXED_AT, 0}};
+    for (int i = 0; i < 3; i++)
+        for (int y = from + 1; y < from + around && !hf_stopped(f->s->stop); y++)
+            memcpy(hf_at(&f->buf[at[i][0]], at[i][1], x0, y), hf_at(&f->buf[at[i][0]], at[i][1], x0, from),
+                   sizeof(float) * (size_t)(2 * (r.x1 - r.x0)));
 }
 
 void hf_layers_bound_border(const struct hf_frame *f, struct hf_rect r)

@@ -131,30 +131,31 @@ void hf_layers_taps_c(const struct hf_hidden_tap *tap, int count, int channels, 
 
 // The first surface behind `nearest` on one side of a line; several samples may make it up. end: weighted sums of
 // colour, radius (4) and distance (5). Returns the sum of the weights.
-static float side_of(const struct hf_hidden_line *line, int side, int channels, int x, float nearest, float end[6])
+static float side_of(const struct hf_hidden_line *line, int side, int steps, const float *const in[6], int channels,
+                     int x, float nearest, float end[6])
 {
     float open = 1, whole = 0;
-    for (int i = 0; i < line->steps; i++) {
+    for (int i = 0; i < steps; i++) {
         const ptrdiff_t at = line->side[side][i] + x;
-        const float behind = line->in[5][at] - nearest, seen = hf_saturate(behind * (1.0f / 3) + (1 - line->away[i]));
-        const float part = open * (hf_saturate(9 * line->in[4][at]) * (hf_layers_hides(behind - 1) * seen));
+        const float behind = in[5][at] - nearest, seen = hf_saturate(behind * (1.0f / 3) + (1 - line->away[i]));
+        const float part = open * (hf_saturate(9 * in[4][at]) * (hf_layers_hides(behind - 1) * seen));
         open = open - part;
         whole = whole + part;
         for (int c = 0; c < channels; c++)
-            end[c] = end[c] + part * line->in[c][at];
-        end[4] = end[4] + part * line->in[5][at];
+            end[c] = end[c] + part * in[c][at];
+        end[4] = end[4] + part * in[5][at];
         end[5] = end[5] + part * line->away[i];
     }
     return whole;
 }
 
-void hf_layers_between_c(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
-                         float *const sum[7])
+void hf_layers_between_c(const struct hf_hidden_line *line, int steps, const float *const in[6], int channels,
+                         const float *nearest, int n, float *const sum[7])
 {
     for (int x = 0; x < n; x++) {
         float end[2][6] = {{0}}, whole[2], inverse[2];
         for (int i = 0; i < 2; i++) {
-            whole[i] = side_of(line, i, channels, x, nearest[x], end[i]);
+            whole[i] = side_of(line, i, steps, in, channels, x, nearest[x], end[i]);
             inverse[i] = whole[i] > 0 ? 1 / whole[i] : 0;
         }
         const float r0 = end[0][4] * inverse[0], r1 = end[1][4] * inverse[1];

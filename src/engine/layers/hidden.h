@@ -72,11 +72,10 @@ static inline float hf_layers_level_from(int j)
     return (float)((2 << j) - 2);
 }
 
-// A line through n samples (colour, weight (4), radius (5)): the offsets of the samples some steps away on either side,
-// and their distance in half-resolution pixels.
+// A line through a sample: the offsets of the samples some steps away on either side, and their distance in half-resolution
+// pixels.
 struct hf_hidden_line {
     int steps;
-    const float *in[6];
     ptrdiff_t side[2][HF_LAYERS_STEPS];
     float away[HF_LAYERS_STEPS];
 };

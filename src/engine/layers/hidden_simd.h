@@ -173,42 +173,42 @@ static void layers_taps_simd(const struct hf_hidden_tap *tap, int count, int cha
     HF_WITH_CHANNELS(channels, layers_taps_of(tap, count, CHANNELS, nearest, n, sum));
 }
 
-HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, const int channels, int x, vf nearest,
-                            vf end[6])
+HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, int steps, const float *const in[6],
+                            const int channels, int x, vf nearest, vf end[6])
 {
     // Nothing lies behind an infinitely far surface.
     vf open = vf_keep(vf_lt(nearest, vf_set1(HUGE_VALF)), vf_set1(1)), whole = vf_zero();
     for (int i = 0; i < 6; i++)
         end[i] = vf_zero();
-    for (int i = 0; i < line->steps && vm_any(vf_gt(open, vf_zero())); i++) {
+    for (int i = 0; i < steps && vm_any(vf_gt(open, vf_zero())); i++) {
         const ptrdiff_t at = line->side[side][i] + x;
-        const vf r = vf_load(line->in[5] + at), behind = vf_sub(r, nearest), off = vf_set1(1 - line->away[i]);
+        const vf r = vf_load(in[5] + at), behind = vf_sub(r, nearest), off = vf_set1(1 - line->away[i]);
         const vf hides = layers_hides(vf_sub(behind, vf_set1(1)));
         const vf sees = vf_mul(hides, vf_saturate(vf_fma(behind, vf_set1(1.0f / 3), off)));
         if (!vm_any(vf_gt(sees, vf_zero())))
             continue;
-        const vf part = vf_mul(open, vf_mul(vf_saturate(vf_mul(vf_set1(9), vf_load(line->in[4] + at))), sees));
+        const vf part = vf_mul(open, vf_mul(vf_saturate(vf_mul(vf_set1(9), vf_load(in[4] + at))), sees));
         open = vf_sub(open, part);
         whole = vf_add(whole, part);
         for (int c = 0; c < channels; c++)
-            end[c] = vf_fma(part, vf_load(line->in[c] + at), end[c]);
+            end[c] = vf_fma(part, vf_load(in[c] + at), end[c]);
         end[4] = vf_fma(part, r, end[4]);
         end[5] = vf_fma(part, vf_set1(line->away[i]), end[5]);
     }
     return whole;
 }
 
-HF_INLINE void layers_between_of(const struct hf_hidden_line *line, const int channels, const float *nearest, int n,
-                                 float *const sum[7])
+HF_INLINE void layers_between_of(const struct hf_hidden_line *line, int steps, const float *const in[6],
+                                 const int channels, const float *nearest, int n, float *const sum[7])
 {
     const vf one = vf_set1(1);
     for (int x = 0; x < n; x += VF_N) {
         const vf from = vf_load(nearest + x);
         vf end[2][6], whole[2], inverse[2], r[2], t[2];
-        whole[0] = layers_side_of(line, 0, channels, x, from, end[0]);
+        whole[0] = layers_side_of(line, 0, steps, in, channels, x, from, end[0]);
         if (!vm_any(vf_gt(whole[0], vf_zero())))
             continue;
-        whole[1] = layers_side_of(line, 1, channels, x, from, end[1]);
+        whole[1] = layers_side_of(line, 1, steps, in, channels, x, from, end[1]);
         for (int i = 0; i < 2; i++) {
             inverse[i] = vf_keep(vf_gt(whole[i], vf_zero()), vf_div(one, whole[i]));
             r[i] = vf_mul(end[i][4], inverse[i]);
@@ -233,10 +233,10 @@ HF_INLINE void layers_between_of(const struct hf_hidden_line *line, const int ch
     }
 }
 
-static void layers_between_simd(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
-                                float *const sum[7])
+static void layers_between_simd(const struct hf_hidden_line *line, int steps, const float *const in[6], int channels,
+                                const float *nearest, int n, float *const sum[7])
 {
-    HF_WITH_CHANNELS(channels, layers_between_of(line, CHANNELS, nearest, n, sum));
+    HF_WITH_CHANNELS(channels, layers_between_of(line, steps, in, CHANNELS, nearest, n, sum));
 }
 
 // hides_from() of hidden.c. Thin fronts are rare.

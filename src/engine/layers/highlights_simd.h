@@ -101,7 +101,16 @@ static void layers_lamps_simd(const float *const in[6], const struct hf_lamp_tap
             light = vf_fma(v, vf_abs(v), light);
         }
         const vf own = vf_sqrt(vf_max(light, zero));
-        vf most = own;
+        vf most = own, least = vf_load(tap[HF_LAYERS_LAMP_NEXT].root + x);
+        for (int i = 0; i < HF_LAYERS_LAMP_NEXT; i++)
+            most = vf_max(vf_load(tap[i].root + x), most);
+        for (int i = HF_LAYERS_LAMP_NEXT + 1; i < HF_LAYERS_LAMP_TAPS; i++)
+            least = vf_min(vf_load(tap[i].root + x), least);
+        // The mean around is at least the least of it, rounding aside, so most vectors have no lamp.
+        const vf lowest = vf_mul(vf_mul(least, least), vf_set1(0.99f * HF_LAYERS_LAMP));
+        if (!vm_any(vm_and(vf_gt(w, zero), vf_gt(vf_mul(most, most), lowest))))
+            continue;
+        most = own;
         for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
             const vf part = vf_saturate(vf_add(vf_sub(layers_nearest_of(tap[i].radius, 2 * x), r), vf_set1(2)));
             vf v = vf_load(tap[i].root + x);

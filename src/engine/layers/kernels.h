@@ -34,10 +34,11 @@ typedef void hf_layers_merge(const float *const in[3][6], int channels, float sl
 struct hf_hidden_tap;
 typedef void hf_layers_taps(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
                             float *const sum[7]);
-// Add the surfaces behind `nearest` that continue between both sides of a line to the sums.
+// Add the surfaces behind `nearest` that continue between both sides of a line to the sums: of n samples in[] (colour, weight
+// (4), radius (5)), no farther than the line's first steps.
 struct hf_hidden_line;
-typedef void hf_layers_between(const struct hf_hidden_line *line, int channels, const float *nearest, int n,
-                               float *const sum[7]);
+typedef void hf_layers_between(const struct hf_hidden_line *line, int steps, const float *const in[6], int channels,
+                               const float *nearest, int n, float *const sum[7]);
 // The nearest, that is the least, radius of each of n quads (2 x 2 pixels), from what hf_layers_quad_rows gives.
 typedef void hf_layers_nearest(const float *const radius[4], const float *const weight[4], int n, float *out);
 // Hidden samples from the sums of taps; their colours are square roots. Their weight is the part of the quad that lies

@@ -23,13 +23,14 @@ struct band {
     int reach;
     struct hf_layers_set level[HF_LAYERS_LEVELS], across, found;
     struct hf_hidden_line line[HF_LAYERS_LINES];
-    float *nearest;  // least visible radius in each quad; `width` quads per row
+    struct hf_hidden_tap tap[HF_LAYERS_LEVELS][9];  // without samples
+    float *nearest;                                 // least visible radius in each quad; `width` quads per row
     int width;
     // Blocks; (0, 0) is the band's first, and there are more around it. farthest: largest radius in a block; within:
     // largest radius within the search's reach; needed: how many levels are searched; made: whether each level is made.
     int columns, rows, around, stride;
     float *farthest, *within;
-    uint8_t *needed, *wide, *made[HF_LAYERS_LEVELS];  // wide: scratch
+    uint8_t *needed, *wide, *made[HF_LAYERS_LEVELS];  // wide: scratch, also of one row's levels
 };
 
 static size_t plane_floats(const struct hf_layers *l, int width, int height)
@@ -310,35 +311,40 @@ static float farthest_behind(const struct band *b, const float *nearest, int x, 
 static void find_between(const struct band *b, const float *nearest, float behind, int x, int n, int y,
                          float *const sum[7])
 {
-    const float *in[6] = {NULL};
-    planes_of(&b->level[0], b->l->channels, x, y, (float **)in);
+    float *in[6] = {NULL};
+    planes_of(&b->level[0], b->l->channels, x, y, in);
     for (int k = 0; k < HF_LAYERS_LINES; k++) {
-        struct hf_hidden_line line = b->line[k];
-        memcpy(line.in, in, sizeof in);
-        while (line.steps > 0 && behind * (1.0f / 3) + (1 - line.away[line.steps - 1]) < -ROUNDED)
-            line.steps--;
-        hf_layers_kernels(b->f)->between(&line, b->l->channels, nearest, n, sum);
+        const struct hf_hidden_line *line = &b->line[k];
+        int steps = line->steps;
+        while (steps > 0 && behind * (1.0f / 3) + (1 - line->away[steps - 1]) < -ROUNDED)
+            steps--;
+        hf_layers_kernels(b->f)->between(line, steps, (const float *const *)in, b->l->channels, nearest, n, sum);
     }
 }
 
-// Whether a tap of level j, `away` of its steps from the quad, finds anything that far behind; and its ramp. It begins at
-// a radius half a step before the tap, but not before the level is needed.
-static int set_ramp(struct hf_hidden_tap *tap, int j, float away, float behind)
+// How levels are tapped: where a tap's ramp begins and how steep it is. It begins at a radius half a step before the tap, but
+// not before the level is needed.
+static void make_taps(struct band *b)
 {
-    const float step = (float)(2 << j), full = (away > 0 || !j ? away + 0.5f : 1.5f) * step;
-    tap->from = fmaxf((away - 0.5f) * step, hf_layers_level_from(j));
-    tap->scale = 1 / (full - tap->from);
-    return behind > tap->from;
+    static const float distance[3] = {0, 1, 1.41421356f}, share[3] = {1, 0.5f, 0.25f};
+    float part = 1;
+    for (int j = 0; j < b->l->levels; j++, part /= 256)
+        for (int i = 0; i < 9; i++) {
+            const int of = (i % 3 != 1) + (i / 3 != 1);
+            const float away = distance[of], step = (float)(2 << j), full = (of || !j ? away + 0.5f : 1.5f) * step,
+                        from = fmaxf((away - 0.5f) * step, hf_layers_level_from(j));
+            b->tap[j][i] = (struct hf_hidden_tap){
+                .from = from, .scale = 1 / (full - from), .part = part * share[of], .whole = HF_LAYERS_REACHED / part};
+        }
 }
 
 static void find(const struct band *b, int x, int n, int y, int levels)
 {
-    static const float distance[3] = {0, 1, 1.41421356f}, share[3] = {1, 0.5f, 0.25f};
     const struct hf_layers_kernels *k = hf_layers_kernels(b->f);
     const int channels = b->l->channels;
     const float *nearest = b->nearest + (y - b->r.y0) * b->width + x - b->r.x0;
     _Alignas(64) float memory[7][STEP + PAD];
-    float *sum[7], *out[6] = {NULL}, part = 1;
+    float *sum[7], *out[6] = {NULL};
     for (int i = 0; i < 7; i++) {
         sum[i] = memory[i];
         memset(sum[i], 0, sizeof(float) * (size_t)(n + BLOCK));  // clears the rest of the last vector too
@@ -346,15 +352,14 @@ static void find(const struct band *b, int x, int n, int y, int levels)
     const float behind = farthest_behind(b, nearest, x, n, y);
     struct hf_hidden_tap taps[9 * HF_LAYERS_LEVELS];
     int count = 0;
-    for (int j = 0; j < levels && behind > 1; j++, part /= 256)
+    for (int j = 0; j < levels && behind > 1; j++)
         for (int i = 0; i < 9; i++) {
-            const int u = i % 3 - 1, v = i / 3 - 1, away = (u != 0) + (v != 0);
-            struct hf_hidden_tap *tap = &taps[count];
-            *tap = (struct hf_hidden_tap){.part = part * share[away], .whole = HF_LAYERS_REACHED / part};
-            if (!set_ramp(tap, j, distance[away], behind))
+            if (!(behind > b->tap[j][i].from))
                 continue;
-            planes_of(&b->level[j], channels, x + u * (1 << j), row_of(b, j, y + v * (1 << j)), (float **)tap->in);
-            count++;
+            struct hf_hidden_tap *tap = &taps[count++];
+            *tap = b->tap[j][i];
+            planes_of(&b->level[j], channels, x + (i % 3 - 1) * (1 << j), row_of(b, j, y + (i / 3 - 1) * (1 << j)),
+                      (float **)tap->in);
         }
     k->taps(taps, count, channels, nearest, n, sum);
     find_between(b, nearest, behind, x, n, y, sum);
@@ -369,9 +374,13 @@ struct run {
     int x, n, needed, end;
 };
 
-static int next_run(const struct band *b, int y, struct run *run)
+static const uint8_t *needed_in(const struct band *b, int y)
 {
-    const uint8_t *needed = b->needed + (y - b->r.y0) / BLOCK * b->stride;
+    return b->needed + (y - b->r.y0) / BLOCK * b->stride;
+}
+
+static int next_run(const struct band *b, const uint8_t *needed, struct run *run)
+{
     const int start = run->end;
     if (start >= b->columns)
         return 0;
@@ -383,11 +392,26 @@ static int next_run(const struct band *b, int y, struct run *run)
     return 1;
 }
 
-// Search a row of the band where a block needs it. Beyond the frame nothing is hidden.
+// Whether anything may lie at least a pixel of radius behind one of a block's quads in row y.
+static int is_behind(const struct band *b, int block, int y)
+{
+    const float *nearest = b->nearest + (y - b->r.y0) * b->width + block * BLOCK,
+                before = b->within[(y - b->r.y0) / BLOCK * b->stride + block] - 1 + ROUNDED;
+    const int n = hf_min(b->r.x1 - b->r.x0 - block * BLOCK, BLOCK);
+    int any = 0;
+    for (int x = 0; x < n; x++)
+        any |= nearest[x] < before;
+    return any;
+}
+
+// Search a row of the band where one of a block's quads needs it. Beyond the frame nothing is hidden.
 static void find_row(const struct band *b, int y)
 {
+    const uint8_t *needed = needed_in(b, y);
     float *weight = b->found.weight + y * b->found.stride;
-    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, y, &run);)
+    for (int i = 0; i < b->columns; i++)
+        b->wide[i] = needed[i] && is_behind(b, i, y) ? needed[i] : 0;
+    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, b->wide, &run);)
         if (run.needed)
             find(b, run.x, run.n, y, run.needed);
         else
@@ -400,7 +424,7 @@ static void find_row(const struct band *b, int y)
 static void smooth_along(const struct band *b, int y)
 {
     const int channels = b->l->channels;
-    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, y, &run);) {
+    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, needed_in(b, y), &run);) {
         float *in[HF_LAYERS_TAPS][6] = {{NULL}}, *out[6] = {NULL};
         planes_of(&b->across, channels, run.x, y, out);
         for (int i = 0; i < HF_LAYERS_TAPS; i++)
@@ -419,7 +443,7 @@ static void smooth_down(const struct band *b, int colour, int at, int y)
 {
     static const float none[STEP + PAD];
     const int channels = b->l->channels;
-    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, y, &run);) {
+    for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, needed_in(b, y), &run);) {
         float *in[HF_LAYERS_TAPS][6] = {{NULL}}, *out[6] = {NULL};
         hf_row(&b->f->buf[colour], channels, run.x, y, out);
         out[4] = hf_at(&b->f->buf[at], 0, run.x, y);
@@ -506,6 +530,7 @@ static void find_hidden(const struct hf_frame *f, struct hf_rect r)
     find_farthest(&b);
     find_needed(&b);
     make_lines(&b);
+    make_taps(&b);
     make_levels(&b);
     search(&b, r, HF_LAYERS_BUF_HIDDEN, HF_LAYERS_BUF_HIDDEN_AT, 1);
     find_needed(&b);
