@@ -59,7 +59,7 @@ static float background(const struct fields *v, int c, float own, float p)
 {
     const float front = v->near[4] > 0 ? v->near[c] / v->near[4] : own, some = v->behind[4];
     const float seen =
-        some > 0 ? hf_lerp(v->behind[c] / some, front, HF_BEHIND_NOTHING / (some + HF_BEHIND_NOTHING)) : front;
+        some > 0 ? hf_lerp(v->behind[c] / some, front, HEXAGON_NOTHING / (some + HEXAGON_NOTHING)) : front;
     return hf_lerp(seen, own, hf_saturate(HEXAGON_ALL + p));
 }
 

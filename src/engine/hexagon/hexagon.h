@@ -239,6 +239,12 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 // A sample of at least this weight counts as a whole pixel.
 #define HEXAGON_WHOLE (1 - 0x1p-20f)
 
+// A weight of what lies behind near pixels that counts half; the rest is the near field's colour. A surface that begins to be
+// seen begins with a weight of 0, so the smaller this is the steeper its colour comes in: with 1e-5 within 1e-4 of a pixel of
+// radius, up to 4.5 8-bit codes in one float of a distance. The larger it is, the more of a near bar's light is counted twice in
+// its middle: 0.15 % of a bar as wide as its blur with 1e-4.
+#define HEXAGON_NOTHING 1e-4f
+
 // Colours are summed this much darker, so that no sum overflows unless a sample does. A line's weights add up to at
 // most 1 + ln(2048) < 9 times a sample, the two lines of pass 1 to twice that, and those of pass 2 to 9 times their
 // sum. The factor is a power of two, so no bit changes. A result that rounds up beyond the largest number becomes that
