@@ -7,11 +7,6 @@
 
 enum { HF_BEHIND_LEVELS = 9, HF_BEHIND_BLOCK = 128, HF_BEHIND_PLANES = 10 };
 
-// A weight of what is visible that counts half. It is small, so that the visible part has no edge where near pixels do not
-// cover it, and large beside the weights that a neighbourhood begins with when a near radius grows by the last place of a
-// float.
-#define HF_BEHIND_NOTHING 1e-5f
-
 // How wide the neighbourhoods have to be for a near pixel of radius q, or a quad with that largest radius.
 // Neighbourhood j is 2^(j+1) - 1 half-resolution pixels wide.
 static inline float hf_behind_span(float q)

@@ -167,10 +167,10 @@ static void leaving(struct hf_context *c, int half, float r, int corner)
 }
 
 // A bright near bar before a dark, sharp wall shows its light once: what its coverage leaves open shows the wall, also
-// on the bar. The visible wall is dark, and makes up all but 1e-4 over its weight and 1e-4, which weight is at least that of
-// a neighbourhood of 16 pixels in which 1 of 33 columns is visible, 1e-4: a half. The widest bar reaches as far as its radius, so
-// the middle third of it leaves hardly a hundredth open, and elsewhere more of the wall is visible: a sixth of a hundredth is
-// the bound.
+// on the bar. Behind the bar the dark wall, of which a weight w is visible, makes up w / (w + 1e-4), and the bar's own light the rest.
+// w is at least that of a neighbourhood of 16 pixels in which 1 of 33 columns is visible, 1e-4, so the wall makes up at least a
+// half. The widest bar reaches as far as its radius. So its middle third leaves hardly a hundredth open, and elsewhere more of
+// the wall is visible: the bound is a sixth of a hundredth.
 static void drawn_once(struct hf_context *c, int half)
 {
     static const int widths[] = {2, 6, 12};

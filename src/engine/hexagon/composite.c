@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "engine/hexagon/kernels.h"
-#include "pixel/behind.h"
 
 // The fields at a pixel: near with its coverage, far with its weight, and what lies behind with its weight.
 struct fields {

@@ -2,7 +2,6 @@
 // The hexagon engine on vectors: Load and Composite.
 #include "engine/hexagon/blur_simd.h"
 #include "engine/hexagon/kernels.h"
-#include "pixel/behind.h"
 #include "pixel/coc_vf.h"
 
 // ---- Load ----

@@ -106,7 +106,8 @@ static void layers_lamps_simd(const float *const in[6], const struct hf_lamp_tap
             most = vf_max(vf_load(tap[i].root + x), most);
         for (int i = HF_LAYERS_LAMP_NEXT + 1; i < HF_LAYERS_LAMP_TAPS; i++)
             least = vf_min(vf_load(tap[i].root + x), least);
-        // The mean around is at least the least of it, rounding aside, so most vectors have no lamp.
+        // Most vectors have no lamp: none of their quads is bright even beside the darkest around, and the mean is at least
+        // that, rounding aside.
         const vf lowest = vf_mul(vf_mul(least, least), vf_set1(0.99f * HF_LAYERS_LAMP));
         if (!vm_any(vm_and(vf_gt(w, zero), vf_gt(vf_mul(most, most), lowest))))
             continue;

@@ -143,7 +143,7 @@ void hf_behind_blend_c(const struct hf_scatter_row *row, const float *const weig
                 seen = hf_scatter_mix(colour[1][i] / blurred, far, hf_saturate(far_weight));
             if (sharp > 0)
                 seen = hf_scatter_mix(seen, colour[0][i] / sharp, sharp / (sharp + blurred));
-            v = hf_scatter_mix(seen, v, HF_BEHIND_NOTHING / ((sharp + blurred) + HF_BEHIND_NOTHING));
+            v = hf_scatter_mix(seen, v, HF_SCATTER_NOTHING / ((sharp + blurred) + HF_SCATTER_NOTHING));
         }
         out[i] = v;
     }

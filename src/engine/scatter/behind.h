@@ -6,6 +6,11 @@
 #include "pixel/behind.h"
 #include "engine/scatter/scatter.h"
 
+// A weight of what is visible that counts half. It is small, so that the visible part has no edge where near pixels do not
+// cover it, and large beside the weights that a neighbourhood begins with when a near radius grows by the last place of a
+// float.
+#define HF_SCATTER_NOTHING 1e-5f
+
 extern const struct hf_behind_source hf_scatter_behind_source;
 int hf_scatter_behind_planes(int channels);
 

@@ -34,7 +34,7 @@ static void behind_blend_simd(const struct hf_scatter_row *row, const float *con
                               const float *const colour[2], const float *own, float *out)
 {
     const struct hf_scatter *t = hf_scatter(row->setup);
-    const vf zero = vf_zero(), nothing = vf_set1(HF_BEHIND_NOTHING), dim = vf_set1(t->dim);
+    const vf zero = vf_zero(), nothing = vf_set1(HF_SCATTER_NOTHING), dim = vf_set1(t->dim);
     for (int i = 0; i < row->n; i += VF_N) {
         const vf mine = vf_mul(vf_load(own + i), dim);
         vf front = mine, far = mine, far_weight = zero;
