@@ -2,11 +2,11 @@
 #include "pixel/convolve.h"
 
 // A run of columns, of areas, is summed from the middle outwards.
-static float run_sum(const float *p, int reach)
+static float run_sum(const float *p, int reach, int step)
 {
     float sum = *p;
     for (int j = 1; j <= reach; j++)
-        sum += p[-j] + p[j];
+        sum += p[-j * step] + p[j * step];
     return sum;
 }
 
@@ -14,11 +14,12 @@ static float run_sum(const float *p, int reach)
 // added from top to bottom.
 static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t stride, float *out, int n, float *sum)
 {
+    const int step = t->step;
     for (int x = 0; x < n; x++)
         out[x] = 0;
-    for (int dy = -t->ry; dy <= t->ry; dy++) {
-        const float *p = in + dy * stride;
-        const int k = !t->symmetric ? dy + t->ry : dy < 0 ? -dy : dy;
+    for (int dy = -t->ny; dy <= t->ny; dy++) {
+        const float *p = in + dy * step * stride;
+        const int k = !t->symmetric ? dy + t->ny : dy < 0 ? -dy : dy;
         for (int x = 0; x < n; x++)
             sum[x] = 0;
         for (int i = t->first[k]; i < t->first[k + 1]; i++) {
@@ -26,16 +27,16 @@ static void convolve_row(const struct hf_taps *t, const float *in, ptrdiff_t str
             const int j = t->column[i];
             if (!t->symmetric)
                 for (int x = 0; x < n; x++)
-                    sum[x] += w * p[x + j - t->rx];
-            else if (j > t->rx)
+                    sum[x] += w * p[x + (j - t->nx) * step];
+            else if (j > t->nx)
                 for (int x = 0; x < n; x++)
-                    sum[x] += w * run_sum(p + x, j - t->rx - 1);
+                    sum[x] += w * run_sum(p + x, j - t->nx - 1, step);
             else if (j == 0)
                 for (int x = 0; x < n; x++)
                     sum[x] += w * p[x];
             else
                 for (int x = 0; x < n; x++)
-                    sum[x] += w * (p[x - j] + p[x + j]);
+                    sum[x] += w * (p[x - j * step] + p[x + j * step]);
         }
         for (int x = 0; x < n; x++)
             out[x] += sum[x];

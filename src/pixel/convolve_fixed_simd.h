@@ -22,10 +22,10 @@ enum { WEIGHT_N = VF_N == 4 ? 4 : 1 };
 // complete.
 #define RUN(reach) (((reach) + 1) << 12)
 
-// Are these the weights of such rows?
+// Are these the weights of such rows, whatever their step?
 HF_INLINE int fixed_are(const struct hf_taps *t, const uint16_t *rows, int r, int disc)
 {
-    if (t->runs != disc || !t->symmetric || t->rx != r || t->ry != r)
+    if ((r > 1 && t->runs != disc) || !t->symmetric || t->nx != r || t->ny != r)
         return 0;
     for (int k = 0; k <= r; k++) {
         unsigned columns = 0;
@@ -47,9 +47,16 @@ HF_INLINE void fixed_runs(const int r, vf *h)
         sum[j] = vf_add(sum[j - 1], h[j]);
 }
 
-HF_INLINE void fixed_pairs(const float *p, const int r, vf *h)
+// step: NULL for 1.
+HF_INLINE void fixed_pairs(const float *p, const int r, const ptrdiff_t *step, vf *h)
 {
     h[0] = vf_load(p);
+    if (step) {
+        HF_UNROLL(8)
+        for (int j = 1; j <= r; j++)
+            h[j] = vf_add(vf_load(p - j * *step), vf_load(p + j * *step));
+        return;
+    }
 #if VF_ALIGNED_ONLY
     // A vector of 64 bytes that is not aligned is two loads. The right neighbours are shifted out of aligned ones: half
     // of the values, as shifts share a pipe with the sums.
@@ -115,10 +122,11 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
 
 // An input row d rows outside of the strip: it reaches the first r - d + 1 output rows from that edge on.
 HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
-                          const float *in, int d, int top, float *out, ptrdiff_t stride, int height)
+                          const float *in, const ptrdiff_t *step, int d, int top, float *out, ptrdiff_t stride,
+                          int height)
 {
     vf h[2 * FIXED_R + 2];
-    fixed_pairs(in, r, h);
+    fixed_pairs(in, r, step, h);
     if (disc)
         fixed_runs(r, h);
     __builtin_prefetch(in + 2 * VF_N);
@@ -137,7 +145,8 @@ HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, con
 
 // The rows of the strip itself; sums[i] is that of the output row r - i above the one at hand.
 HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
-                            const float *in, ptrdiff_t in_stride, float *out, ptrdiff_t out_stride, int height)
+                            const float *in, ptrdiff_t in_stride, const ptrdiff_t *step, float *out,
+                            ptrdiff_t out_stride, int height)
 {
     vf sums[2 * FIXED_R + 1];
     HF_UNROLL(17)
@@ -146,7 +155,7 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, c
     for (int y = 0; y < height; y++) {
         const float *p = in + y * in_stride;
         vf h[2 * FIXED_R + 2], row[FIXED_R + 1];
-        fixed_pairs(p, r, h);
+        fixed_pairs(p, r, step, h);
         if (disc)
             fixed_runs(r, h);
         __builtin_prefetch(p + 2 * VF_N);
@@ -169,31 +178,35 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, c
             vf_store(out + (height - 1 - r + i) * out_stride, sums[i]);
 }
 
-// One vector of columns.
-typedef void fixed_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, float *out,
-                          ptrdiff_t out_stride, int height);
+// One vector of columns, of rows that lie in_stride apart; step: between columns.
+typedef void fixed_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, ptrdiff_t step,
+                          float *out, ptrdiff_t out_stride, int height);
 
-// Two functions: inlined into one, the compiler keeps the weights of all rows as vectors, and spills them.
-#define FIXED_COLUMN(rows, r, disc)                                                                                    \
-    static __attribute__((noinline)) void rows##_edge(const float *weight, float scale, const float *in, int d,        \
-                                                      int top, float *out, ptrdiff_t stride, int height)               \
+// name_column, of these rows. steps: NULL where the step is 1, or &step. Two functions: inlined into one, the compiler keeps the
+// weights of all rows as vectors, and spills them.
+#define FIXED_COLUMN(name, rows, r, disc, steps)                                                                       \
+    static                                                                                                             \
+        __attribute__((noinline)) void name##_edge(const float *weight, float scale, const float *in, ptrdiff_t step,  \
+                                                   int d, int top, float *out, ptrdiff_t stride, int height)           \
     {                                                                                                                  \
-        fixed_edge(rows, r, disc, weight, vf_set1(scale), in, d, top, out, stride, height);                            \
+        (void)step;                                                                                                    \
+        fixed_edge(rows, r, disc, weight, vf_set1(scale), in, steps, d, top, out, stride, height);                     \
     }                                                                                                                  \
-    static __attribute__((noinline)) void rows##_inside(const float *weight, float scale, const float *in,             \
-                                                        ptrdiff_t in_stride, float *out, ptrdiff_t out_stride,         \
-                                                        int height)                                                    \
+    static __attribute__((noinline)) void name##_inside(const float *weight, float scale, const float *in,             \
+                                                        ptrdiff_t in_stride, ptrdiff_t step, float *out,               \
+                                                        ptrdiff_t out_stride, int height)                              \
     {                                                                                                                  \
-        fixed_inside(rows, r, disc, weight, vf_set1(scale), in, in_stride, out, out_stride, height);                   \
+        (void)step;                                                                                                    \
+        fixed_inside(rows, r, disc, weight, vf_set1(scale), in, in_stride, steps, out, out_stride, height);            \
     }                                                                                                                  \
-    static void rows##_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, float *out,      \
-                              ptrdiff_t out_stride, int height)                                                        \
+    static void name##_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, ptrdiff_t step,  \
+                              float *out, ptrdiff_t out_stride, int height)                                            \
     {                                                                                                                  \
         for (int d = r; d >= 1; d--)                                                                                   \
-            rows##_edge(weight, scale, in - d * in_stride, d, 1, out, out_stride, height);                             \
-        rows##_inside(weight, scale, in, in_stride, out, out_stride, height);                                          \
+            name##_edge(weight, scale, in - d * in_stride, step, d, 1, out, out_stride, height);                       \
+        name##_inside(weight, scale, in, in_stride, step, out, out_stride, height);                                    \
         for (int d = 1; d <= r; d++)                                                                                   \
-            rows##_edge(weight, scale, in + (height - 1 + d) * in_stride, d, 0, out + (height - 1) * out_stride,       \
+            name##_edge(weight, scale, in + (height - 1 + d) * in_stride, step, d, 0, out + (height - 1) * out_stride, \
                         -out_stride, height);                                                                          \
     }
 

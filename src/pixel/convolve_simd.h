@@ -58,30 +58,32 @@ HF_INLINE void prefetch_row(const float *p, int floats)
 }
 
 // Pairs h[j] of an input row (or, without symmetry, its shifted values); of areas their sums from the middle on, too.
-HF_INLINE void row_pairs(const float *p, int rx, const int symmetric, int runs, const int s, float *h)
+HF_INLINE void row_pairs(const struct hf_taps *t, const float *p, const int symmetric, const int s, float *h)
 {
+    const int nx = t->nx, runs = t->runs;
+    const ptrdiff_t step = t->step;
     if (!symmetric) {
-        for (int j = -rx; j <= rx; j++, h += s * VF_N) {
+        for (int j = -nx; j <= nx; j++, h += s * VF_N) {
             HF_UNROLL(16)
             for (int v = 0; v < s; v++)
-                vf_store(h + v * VF_N, vf_load(p + v * VF_N + j));
+                vf_store(h + v * VF_N, vf_load(p + v * VF_N + j * step));
         }
         return;
     }
     vf sum[CONVOLVE_S];
-    float *run = h + (rx + 1) * s * VF_N;
+    float *run = h + (nx + 1) * s * VF_N;
     HF_UNROLL(16)
     for (int v = 0; v < s; v++) {
         vf_store(h + v * VF_N, sum[v] = vf_load(p + v * VF_N));
         if (runs)
             vf_store(run + v * VF_N, sum[v]);
     }
-    for (int j = 1; j <= rx; j++) {
+    for (int j = 1; j <= nx; j++) {
         h += s * VF_N;
         run += s * VF_N;
         HF_UNROLL(16)
         for (int v = 0; v < s; v++) {
-            const vf pair = vf_add(vf_load(p + v * VF_N - j), vf_load(p + v * VF_N + j));
+            const vf pair = vf_add(vf_load(p + v * VF_N - j * step), vf_load(p + v * VF_N + j * step));
             vf_store(h + v * VF_N, pair);
             sum[v] = vf_add(sum[v], pair);
             if (runs)
@@ -104,20 +106,21 @@ HF_INLINE uint64_t convolve_blocks(int x0, int x1)
     return run << at | run >> (-at & 63);
 }
 
-// What a strip of columns reads of rows, and what it writes. NULL: all.
+// What a strip of columns reads of rows, every step-th, and what it writes. NULL: all.
 struct convolve_window {
     const struct convolve_row *row;
+    int step;
     uint64_t reads, writes;
 };
 
 HF_INLINE int window_reads(const struct convolve_window *w, int y)
 {
-    return !w->row || w->row[y].filled & w->reads;
+    return !w->row || w->row[y * w->step].filled & w->reads;
 }
 
 HF_INLINE int window_wants(const struct convolve_window *w, int y)
 {
-    return !w->row || w->row[y].wanted & w->writes;
+    return !w->row || w->row[y * w->step].wanted & w->writes;
 }
 
 // The rows of a strip's result.
@@ -139,7 +142,7 @@ HF_INLINE void one_row(const struct hf_taps *t, const struct convolve_out *o, in
                        const struct convolve_term *terms, const float *h)
 {
     for (int k = 0; k < t->rows; k++) {
-        float *above = out_row(o, symmetric ? y - k : y - k + t->ry),
+        float *above = out_row(o, symmetric ? y - k : y - k + t->ny),
               *below = symmetric && k ? out_row(o, y + k) : NULL;
         if (!above && !below)
             continue;
@@ -187,12 +190,12 @@ HF_INLINE void row_add_two(float *out, const int s, const vf *a, const vf *b, co
 HF_INLINE void two_rows(const struct hf_taps *t, const struct convolve_out *o, int y, const int s,
                         const struct convolve_term *terms, const float *h)
 {
-    const ptrdiff_t next = (2 * t->rx + 2) * s * (ptrdiff_t)sizeof(vf);
+    const ptrdiff_t next = (2 * t->nx + 2) * s * (ptrdiff_t)sizeof(vf);
     vf a_before[CONVOLVE_S], b_before[CONVOLVE_S];
     HF_UNROLL(16)
     for (int v = 0; v < s; v++)
         a_before[v] = b_before[v] = vf_zero();
-    for (int k = 0; k <= t->ry; k++) {
+    for (int k = 0; k <= t->ny; k++) {
         float *above = out_row(o, y + 1 - k), *below = out_row(o, y + k);
         if (!above && !below && !out_row(o, y - k) && !out_row(o, y + 1 + k))
             continue;
@@ -201,14 +204,14 @@ HF_INLINE void two_rows(const struct hf_taps *t, const struct convolve_out *o, i
         if (k && below)
             row_add_two(below, s, a, b_before, NULL);
         if (k && above)
-            row_add_two(above, s, a_before, b, k == t->ry ? &t->scale : NULL);
+            row_add_two(above, s, a_before, b, k == t->ny ? &t->scale : NULL);
         HF_UNROLL(16)
         for (int v = 0; v < s; v++) {
             a_before[v] = a[v];
             b_before[v] = b[v];
         }
     }
-    float *first = out_row(o, y - t->ry), *last = out_row(o, y + 1 + t->ry);
+    float *first = out_row(o, y - t->ny), *last = out_row(o, y + 1 + t->ny);
     if (first)
         row_add(first, s, a_before, &t->scale);
     if (last)
@@ -230,7 +233,7 @@ HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_
                               const struct convolve_out *o, const int symmetric, const int s,
                               const struct convolve_term *terms, float *h, atomic_int *stop)
 {
-    const int ry = t->ry, step = s * VF_N, end = o->height + ry;
+    const int ry = t->ny, n = s * VF_N, end = o->height + ry;
     for (int y = -ry; y < end && !hf_stopped(stop); y++) {
         const float *p = in + y * in_stride;
         out_begin(o, y + ry, s);
@@ -241,13 +244,13 @@ HF_INLINE void convolve_strip(const struct hf_taps *t, const float *in, ptrdiff_
             }
             continue;
         }
-        prefetch_row(p + CONVOLVE_AHEAD * in_stride - t->rx, step + 2 * t->rx);
-        row_pairs(p, t->rx, symmetric, t->runs, s, h);
+        prefetch_row(p + CONVOLVE_AHEAD * in_stride - t->rx, n + 2 * t->rx);
+        row_pairs(t, p, symmetric, s, h);
         if (CONVOLVE_TWO && symmetric && y + 1 < end && window_reads(o->window, y + 1)) {
             y++;
             out_begin(o, y + ry, s);
-            prefetch_row(p + (CONVOLVE_AHEAD + 1) * in_stride - t->rx, step + 2 * t->rx);
-            row_pairs(p + in_stride, t->rx, symmetric, t->runs, s, h + (2 * t->rx + 2) * step);
+            prefetch_row(p + (CONVOLVE_AHEAD + 1) * in_stride - t->rx, n + 2 * t->rx);
+            row_pairs(t, p + in_stride, symmetric, s, h + (2 * t->nx + 2) * n);
             two_rows(t, o, y - 1, s, terms, h);
         } else {
             one_row(t, o, y, symmetric, s, terms, h);
@@ -383,12 +386,17 @@ HF_INLINE void convolve_planes(const struct hf_taps *t, const struct convolve_jo
     for (int i = 0; i < j->planes; i++)
         clear_rest(j, i, x, x, height, s, y0, y1);
     const int left = j->x0 + x, right = left + s * VF_N;
-    const struct convolve_window w = {j->row ? j->row + y0 : NULL, convolve_blocks(left - t->rx, right + t->rx),
-                                      convolve_blocks(left, right)};
-    for (int i = 0; i < j->planes && y0 < y1; i++) {
-        const struct convolve_out o = {job_out(j, i, x, x) + y0 * j->out_stride[i], j->out_stride[i], y1 - y0, &w};
-        convolve_strip(t, j->in[i] + y0 * j->in_stride[i] + x, j->in_stride[i], &o, symmetric, s, terms, h, j->stop);
-    }
+    struct convolve_window w = {NULL, t->step, convolve_blocks(left - t->rx, right + t->rx),
+                                convolve_blocks(left, right)};
+    // With a step rows y, y + step and so on have nothing to do with those between.
+    for (int i = 0; i < j->planes; i++)
+        for (int y = y0; y < hf_min(y0 + t->step, y1); y++) {
+            const ptrdiff_t out_stride = j->out_stride[i], in_stride = j->in_stride[i];
+            const struct convolve_out o = {job_out(j, i, x, x) + y * out_stride, out_stride * t->step,
+                                           (y1 - y + t->step - 1) / t->step, &w};
+            w.row = j->row ? j->row + y : NULL;
+            convolve_strip(t, j->in[i] + y * in_stride + x, in_stride * t->step, &o, symmetric, s, terms, h, j->stop);
+        }
 }
 
 HF_INLINE void convolve_any(const struct hf_taps *t, const struct convolve_job *j, int x, int height,
@@ -404,21 +412,44 @@ HF_INLINE void convolve_any(const struct hf_taps *t, const struct convolve_job *
 #undef STRIP
 }
 
+// The rows from the first to the last that a vector from column x gets anything in, of those that are wanted.
+static void rows_filled(const struct hf_taps *t, const struct convolve_job *j, int x, int *y0, int *y1)
+{
+    const int left = j->x0 + x;
+    const uint64_t reads = convolve_blocks(left - t->rx, left + VF_N + t->rx);
+    const uint64_t writes = convolve_blocks(left, left + VF_N);
+    int first = *y0 - t->ry, last = *y1 + t->ry;
+    while (first < last && !(j->row[first].filled & reads))
+        first++;
+    while (last > first && !(j->row[last - 1].filled & reads))
+        last--;
+    *y0 = hf_max(first - t->ry, *y0);
+    *y1 = first < last ? hf_min(last + t->ry, *y1) : *y0;
+    while (*y0 < *y1 && !(j->row[*y0].wanted & writes))
+        (*y0)++;
+    while (*y1 > *y0 && !(j->row[*y1 - 1].wanted & writes))
+        (*y1)--;
+}
+
 // s vectors for a tap set that has a column of its own: each looks for its rows.
 static void convolve_columns(const struct hf_taps *t, const float *weights, const struct convolve_job *j,
                              fixed_column *column, int x, int height, int s)
 {
     int y0[FIXED_STRIP], y1[FIXED_STRIP];
-    for (int v = 0; v < s; v++)
+    for (int v = 0; v < s; v++) {
         rows_needed(j, x + v * VF_N, height, 1, &y0[v], &y1[v]);
+        if (j->row)
+            rows_filled(t, j, x + v * VF_N, &y0[v], &y1[v]);
+    }
     for (int i = 0; i < j->planes && j->clears; i++)
         for (int v = 0; v < s; v++)
             clear_rest(j, i, x, x + v * VF_N, height, 1, y0[v], y1[v]);
     for (int i = 0; i < j->planes && !hf_stopped(j->stop); i++)
         for (int v = 0; v < s; v++)
-            if (y0[v] < y1[v])
-                column(weights, t->scale, j->in[i] + y0[v] * j->in_stride[i] + x + v * VF_N, j->in_stride[i],
-                       job_out(j, i, x, x + v * VF_N) + y0[v] * j->out_stride[i], j->out_stride[i], y1[v] - y0[v]);
+            for (int y = y0[v]; y < hf_min(y0[v] + t->step, y1[v]); y++)
+                column(weights, t->scale, j->in[i] + y * j->in_stride[i] + x + v * VF_N, j->in_stride[i] * t->step,
+                       t->step, job_out(j, i, x, x + v * VF_N) + y * j->out_stride[i], j->out_stride[i] * t->step,
+                       (y1[v] - y + t->step - 1) / t->step);
 }
 
 // Convolves strip by strip, and finishes each while it is in the cache. A first vector lies wherever r begins, all

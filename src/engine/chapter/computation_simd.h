@@ -12,9 +12,9 @@
 static const uint16_t rings_4[] = {0x15, 0x1e, 0x1f, 0x0e, 0x07};
 static const uint16_t rings_6[] = {0x55, 0x7e, 0x7f, 0x6e, 0x37, 0x3e, 0x0f};
 static const uint16_t rings_8[] = {0x155, 0x1fe, 0x1ff, 0x1ee, 0x1f7, 0x0fe, 0x07f, 0x03e, 0x01f};
-FIXED_COLUMN(rings_4, 4, 0)
-FIXED_COLUMN(rings_6, 6, 0)
-FIXED_COLUMN(rings_8, 8, 0)
+FIXED_COLUMN(rings_4, rings_4, 4, 0, NULL)
+FIXED_COLUMN(rings_6, rings_6, 6, 0, NULL)
+FIXED_COLUMN(rings_8, rings_8, 8, 0, NULL)
 
 static int rings_are(const struct hf_taps *t, const uint16_t *rows, int r)
 {

@@ -216,7 +216,10 @@ int hf_tap_set_build(struct hf_tap_set *t, const struct hf_taps_key *k, const st
     t->dy = dy;
     t->share = share;
     const int symmetric = mirrors(w, rx, ry);
-    t->taps = (struct hf_taps){.rx = rx,
+    t->taps = (struct hf_taps){.step = 1,
+                               .nx = rx,
+                               .ny = ry,
+                               .rx = rx,
                                .ry = ry,
                                .symmetric = symmetric,
                                .rows = symmetric ? ry + 1 : 2 * ry + 1,

@@ -95,7 +95,7 @@ void hf_area_cover(double *cover, const struct hf_area *a, atomic_int *stop)
 double hf_area_unit(const struct hf_area *a)
 {
     int bits = 24;
-    for (double all = 4 * (a->radius_x + 1) * (a->radius_y + 1); all >= 1; all /= 2)  // more than a disc has
+    for (double all = 4 * (a->radius_x + 1) * (a->radius_y + 1) * a->times; all >= 1; all /= 2)  // more than a disc has
         bits--;
     return ldexp(1, -bits);
 }

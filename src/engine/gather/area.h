@@ -12,6 +12,7 @@ struct hf_area {
     double rotation;            // degrees
     int symmetric;              // mirrors in x and in y
     int cut;                    // the aperture is larger than the lattice
+    int times;                  // the tents' sum: a picture of ones is one of these where the weights are laid over it
 };
 
 // Part of each pixel of the lattice that is covered, 0..1, and at least a little of the nine in the middle: rows

@@ -173,12 +173,48 @@ static void behind_planes(const struct hf_frame *f, struct hf_rect r, int i)
         }
 }
 
+// A tent over values that lie `by` apart, the first at p. Sums and doubles alone, which are the same fused.
+static float tent(const float *p, ptrdiff_t by, int step)
+{
+    const float *middle = p + (step - 1) * by;
+    const float beside = middle[-by] + middle[by];
+    if (step == 2)
+        return beside + (*middle + *middle);
+    const float inner = ((middle[-2 * by] + middle[2 * by]) + beside) + (*middle + *middle);
+    return ((middle[-3 * by] + middle[3 * by]) + beside) + (inner + inner);
+}
+
+// A plane convolved with the taps' tents, in place, as far as taps around r reach. What belongs to a pixel comes to lie where
+// the first of its tent's values was.
+static void tents(const struct hf_buf *plane, int c, struct hf_rect r, const struct hf_taps *t)
+{
+    const struct hf_rect all = grown(t, r);
+    const int n = all.x1 - all.x0, around = 2 * (t->step - 1);
+    for (int y = all.y0; y < all.y1 - around; y++) {
+        float *row = hf_at(plane, c, all.x0, y);
+        for (int x = 0; x < n; x++)
+            row[x] = tent(row + x, plane->stride, t->step);
+        for (int x = 0; x < n - around; x++)
+            row[x] = tent(row + x, 1, t->step);
+    }
+}
+
+static void convolve_plane(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t, int in, int out, int c)
+{
+    struct hf_buf from = f->buf[in];
+    if (t->step > 1) {
+        tents(&from, c, r, t);
+        from.ch[c] -= (t->step - 1) * (from.stride + 1);
+    }
+    hf_convolve_c(f, r, t, &from, c, &f->buf[out], c);
+}
+
 static void convolve_level(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t)
 {
     for (int c = 0; c < f->s->channels; c++)
-        hf_convolve_c(f, r, t, &f->buf[HF_BUF_LEVEL], c, &f->buf[HF_BUF_LEVEL_SUM], c);
+        convolve_plane(f, r, t, HF_BUF_LEVEL, HF_BUF_LEVEL_SUM, c);
     for (int c = 0; c < 2; c++)
-        hf_convolve_c(f, r, t, &f->buf[HF_BUF_LEVEL_WEIGHT], c, &f->buf[HF_BUF_LEVEL_WEIGHT_SUM], c);
+        convolve_plane(f, r, t, HF_BUF_LEVEL_WEIGHT, HF_BUF_LEVEL_WEIGHT_SUM, c);
 }
 
 // Buffers of sums: colour, its weight, and the weight without Karis'.
@@ -271,8 +307,7 @@ static void add_behind(const struct hf_frame *f, const struct sums *behind, stru
     const struct hf_levels *l = hf_gather_behind(f->s);
     const int leaves = hf_gather(f->s)->leaves;
     if (leaves)
-        hf_convolve_c(f, r, &l->level[i].kernel.taps, &f->buf[HF_BUF_LEVEL_WEIGHT], 2, &f->buf[HF_BUF_LEVEL_WEIGHT_SUM],
-                      2);
+        convolve_plane(f, r, &l->level[i].kernel.taps, HF_BUF_LEVEL_WEIGHT, HF_BUF_LEVEL_WEIGHT_SUM, 2);
     for (int y = r.y0; y < r.y1 && !hf_stopped(f->s->stop); y++) {
         const float *part = beyond(f, &l->level[i].kernel, r, y);
         for (int x = r.x0; x < r.x1; x++) {

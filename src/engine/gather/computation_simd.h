@@ -6,18 +6,58 @@
 #include "pixel/coc_vf.h"
 #include "pixel/convolve_simd.h"
 
-// Discs of radius 4, 6 and 8: 12 pixels of a picture of 1080 lines, and the same at 720 and 1440.
+// Discs of a radius of 4, 6 and 8: 12 pixels of a picture of 1080 lines, and the same at 720 and 1440. And those of near levels
+// (near_radii in engine.c), in steps of theirs: 1, 2, the root of 8, 4, the root of 32 and 8. With a step of 4 the weights are
+// rounded to larger units, and two of a disc of 8 to 0.
 // clang-format off
+static const uint16_t disc_1[] = {0x03, 0x03};
+static const uint16_t disc_2[] = {RUN(1) | 0x04, 0x07, 0x03};
+static const uint16_t disc_root_8[] = {RUN(2) | 0x08, RUN(1) | 0x0c, 0x07, 0x03};
 static const uint16_t disc_4[] = {RUN(3) | 0x10, RUN(3) | 0x10, RUN(2) | 0x18, RUN(1) | 0x0c, 0x07};
+static const uint16_t disc_root_32[] = {RUN(5) | 0x40, RUN(4) | 0x60, RUN(4) | 0x20, RUN(3) | 0x30,
+                                        RUN(2) | 0x18, 0x0f, 0x03};
 static const uint16_t disc_6[] = {RUN(5) | 0x40, RUN(5) | 0x40, RUN(4) | 0x60, RUN(4) | 0x20,
                                   RUN(3) | 0x30, RUN(1) | 0x1c, 0x07};
 static const uint16_t disc_8[] = {RUN(7) | 0x100, RUN(7) | 0x100, RUN(7) | 0x100,
                                   RUN(6) | 0x180, RUN(6) | 0x080, RUN(5) | 0x0c0,
                                   RUN(4) | 0x060, RUN(2) | 0x038, 0x0f};
+static const uint16_t disc_8_rounded[] = {RUN(7) | 0x100, RUN(7) | 0x100, RUN(7) | 0x100,
+                                          RUN(6) | 0x180, RUN(6) | 0x080, RUN(5) | 0x040,
+                                          RUN(4) | 0x060, RUN(2) | 0x018, 0x0f};
 // clang-format on
-FIXED_COLUMN(disc_4, 4, 1)
-FIXED_COLUMN(disc_6, 6, 1)
-FIXED_COLUMN(disc_8, 8, 1)
+FIXED_COLUMN(one_1, disc_1, 1, 1, NULL)
+FIXED_COLUMN(one_2, disc_2, 2, 1, NULL)
+FIXED_COLUMN(one_4, disc_4, 4, 1, NULL)
+FIXED_COLUMN(one_6, disc_6, 6, 1, NULL)
+FIXED_COLUMN(one_8, disc_8, 8, 1, NULL)
+FIXED_COLUMN(any_root_8, disc_root_8, 3, 1, &step)
+FIXED_COLUMN(any_4, disc_4, 4, 1, &step)
+FIXED_COLUMN(any_root_32, disc_root_32, 6, 1, &step)
+FIXED_COLUMN(any_8, disc_8, 8, 1, &step)
+FIXED_COLUMN(any_8_rounded, disc_8_rounded, 8, 1, &step)
+
+// The column of such a disc, or NULL.
+static fixed_column *area_column(const struct hf_taps *t)
+{
+    static const struct {
+        const uint16_t *rows;
+        int r;
+        fixed_column *one, *any;  // with a step of 1, and with another
+    } discs[] = {
+        {disc_1, 1, one_1_column, NULL},
+        {disc_2, 2, one_2_column, NULL},
+        {disc_root_8, 3, any_root_8_column, any_root_8_column},
+        {disc_4, 4, one_4_column, any_4_column},
+        {disc_root_32, 6, any_root_32_column, any_root_32_column},
+        {disc_6, 6, one_6_column, NULL},
+        {disc_8, 8, one_8_column, any_8_column},
+        {disc_8_rounded, 8, any_8_rounded_column, any_8_rounded_column},
+    };
+    for (size_t i = 0; i < sizeof discs / sizeof *discs; i++)
+        if (fixed_are(t, discs[i].rows, discs[i].r, 1))
+            return t->step == 1 ? discs[i].one : discs[i].any;
+    return NULL;
+}
 
 // Sums that are used up strip by strip: a strip's rows, on lines that lie an odd number of cache lines apart, at the
 // beginning of f->work.
@@ -42,11 +82,7 @@ static void convolve_to_strip(struct convolve_job *j, const struct hf_frame *f, 
 static void area_convolve(const struct hf_frame *f, struct hf_rect r, const struct hf_taps *t,
                           const struct convolve_job *jobs, int count, hf_kernel *finish)
 {
-    fixed_column *column = fixed_are(t, disc_6, 6, 1)   ? disc_6_column
-                           : fixed_are(t, disc_4, 4, 1) ? disc_4_column
-                           : fixed_are(t, disc_8, 8, 1) ? disc_8_column
-                                                        : NULL;
-    convolve_jobs(f, r, t, column, strip_plane(f, HF_STRIP_PLANES, r.y1 - r.y0), jobs, count, finish);
+    convolve_jobs(f, r, t, area_column(t), strip_plane(f, HF_STRIP_PLANES, r.y1 - r.y0), jobs, count, finish);
 }
 
 HF_INLINE vf area_hidden(const struct hf_levels *l, const float *blur)

@@ -215,7 +215,8 @@ static int build_levels(struct hf_levels *l, int far, const float *radius, int c
                                         .rotation = rotation,
                                         // Nothing lies beyond the frame: no pixel has another farther away.
                                         .most_x = hf_max(s->half_width - 1, 1),
-                                        .most_y = hf_max(s->half_height - 1, 1)};
+                                        .most_y = hf_max(s->half_height - 1, 1),
+                                        .soft = hf_gather(s)->many && !far};
         const float after = i + 1 < count ? radius[i + 1] / full : 0;
         level->coc = radius[i] / full;
         level->area = level->coc * level->coc;
@@ -354,7 +355,7 @@ static float times(const struct hf_setup *s, int pass, unsigned field, float rad
         return 1;
     float sum = 0;  // of the levels' radii, half-resolution pixels
     for (int i = l->filled; i < l->count; i++)
-        sum += l->level[i].kernel.key.radius;
+        sum += l->level[i].kernel.key.radius / (float)l->level[i].kernel.taps.step;
     return pass == HF_PASS_DOWN          ? 6
            : pass == HF_PASS_COMPUTATION ? 5.7f + 0.52f * sum
            : pass == HF_GATHER_COMPOSITE ? 2.6f

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "base/stop.h"
+#include "engine/gather/tents.h"
 #include "pixel/convolve.h"
 
 // What it follows from. No padding: keys are compared byte by byte.
@@ -14,12 +15,13 @@ struct hf_area_key {
     int blades;          // 0: a disc
     float rotation;      // degrees
     int most_x, most_y;  // what lies farther away is never met
+    int soft;            // 1: if it is large it may have taps with a step, and so a softer rim
 };
 
 // All pixels, each by the part of it that the aperture covers.
 struct hf_area_kernel {
     struct hf_taps taps;
-    // sums[y * (2 rx + 2) + x] of the weights above and left of lattice point (x - rx, y - ry), in units.
+    // sums[y * (2 rx + 2) + x] of the weights above and left of pixel (x - rx, y - ry), in units.
     const int *sums;
     float unit;
 

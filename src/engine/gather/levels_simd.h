@@ -1,20 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Computation with several kernels for a field, on vectors.
-#include "engine/gather/levels_planes_simd.h"
 #include "engine/gather/lights_simd.h"
+#include "engine/gather/tents_simd.h"
+
+// Add a level's plane to a job, as far as taps around r reach: with zeros in rows that hold nothing, and convolved with tents.
+static void area_level_plane(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
+                             const struct hf_taps *t, struct convolve_job *j, int in, int c, int out)
+{
+    const struct hf_rect all = area_grown(r, t);
+    const struct hf_buf plane = f->buf[in];
+    for (int y = all.y0; y < all.y1; y++)
+        if (!rows->level[y - rows->y0].filled)
+            memset(hf_at(&plane, c, all.x0, y), 0, (size_t)(all.x1 - all.x0) * sizeof(float));
+    if (t->step > 1)
+        area_tents(f, rows, r, t, &plane, c);
+    convolve_plane(j, f, r, in, c, out, c);
+    j->in[j->planes - 1] -= (t->step - 1) * (plane.stride + 1);
+}
 
 // A level's planes around r, into its sums.
 static void area_convolve_level(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
                                 const struct hf_taps *t, int leaves)
 {
-    struct convolve_job j = {.row = &rows->level[r.y0 - rows->y0], .x0 = r.x0};
+    struct convolve_job j = {.row = &rows->level[r.y0 - rows->y0], .x0 = r.x0, .clears = 1};
     for (int c = 0; c < f->s->channels; c++)
-        convolve_plane(&j, f, r, HF_BUF_LEVEL, c, HF_BUF_LEVEL_SUM, c);
-    for (int c = 0; c < 1 + hf_fields(f->s)->karis; c++)
-        convolve_plane(&j, f, r, HF_BUF_LEVEL_WEIGHT, c, HF_BUF_LEVEL_WEIGHT_SUM, c);
-    if (leaves)
-        convolve_plane(&j, f, r, HF_BUF_LEVEL_WEIGHT, 2, HF_BUF_LEVEL_WEIGHT_SUM, 2);
-    convolve_jobs(f, r, t, NULL, rows->work, &j, 1, NULL);
+        area_level_plane(f, rows, r, t, &j, HF_BUF_LEVEL, c, HF_BUF_LEVEL_SUM);
+    for (int c = 0; c < 3; c++)
+        if (c == 0 || (c == 1 && hf_fields(f->s)->karis) || (c == 2 && leaves))
+            area_level_plane(f, rows, r, t, &j, HF_BUF_LEVEL_WEIGHT, c, HF_BUF_LEVEL_WEIGHT_SUM);
+    if (t->step > 1)
+        area_tents_filled(rows, r, t);
+    convolve_jobs(f, r, t, area_column(t), rows->work, &j, 1, NULL);
 }
 
 // Rows of a field's sums: colour, its weight, and the weight without Karis'; without Karis average they are one, the last.

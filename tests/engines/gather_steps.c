@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The gather's levels of large near areas, whose taps have a step of 2 or 4: against the formulas in double precision, and the
+// same bits from every instruction set.
+#include <math.h>
+#include <stdio.h>
+
+#include "support/check.h"
+#include "support/reference.h"
+#include "support/render.h"
+
+// Radii of up to 64 pixels: at half resolution the largest level has one of 32, and taps that reach 35. A frame whose half is no
+// wider than that would have them cut, without a step.
+enum { WIDTH = 120, HEIGHT = 102 };
+static const float RADIUS = 64;
+
+static struct hf_params steps_params(void)
+{
+    struct hf_params p = scene_params();
+    p.engine = HF_ENGINE_GATHER;
+    p.max_radius = RADIUS;
+    p.gather.per_pixel_kernel = 1;
+    return p;
+}
+
+// Near on the left, in blocks of all radii; as large as that, far and sharp on the right.
+static struct scene steps_scene(unsigned seed)
+{
+    struct rng rng = rng_seed(seed);
+    struct scene s = scene_new(&rng, seed % 2 ? SCENE_HIGHLIGHTS : SCENE_BLOCKS, WIDTH, HEIGHT, 3);
+    for (int y = 0; y < HEIGHT; y += 6)
+        for (int x = 0; x < WIDTH; x += 10) {
+            const float part = rng_range(&rng, -1, 1), r = (x < WIDTH / 2 ? -fabsf(part) : part) * RADIUS;
+            for (int k = 0; k < 60; k++)
+                s.depth.plane[0][(y + k / 10) * WIDTH + x + k % 10] = fabsf(part) < 0.1f ? 0 : r;
+        }
+    return s;
+}
+
+// Weights of a disc of 8 steps of 4 are whole multiples of 2^-7, and those of about 60 points at its rim are between 0 and 1: each
+// is wrong by up to 2^-8 of the 201 that they sum up to. What is rounded on the way is less (tests/stability/rounding.c).
+static void against_double(struct hf_context *c)
+{
+    const double most = 60 * 0x1p-8 / 201;
+    for (unsigned seed = 1; seed <= 2; seed++) {
+        struct scene s = steps_scene(seed);
+        const struct hf_depth depth = picture_radii(&s.depth);
+        const struct hf_params p = steps_params();
+        struct reference *ref = reference_render(&s.colour, &depth, &p, NULL, NULL);
+        struct picture want = reference_picture(ref), out = render(c, &s.colour, &depth, &p);
+        const double worst = largest_difference(&out, &want) / largest_sample(&s.colour);
+        printf("seed %u: %.3g of the largest sample from double precision, bound %.3g\n", seed, worst, most);
+        CHECK_MSG(worst <= most, "seed %u: %g of the largest sample from double precision, bound %g", seed, worst,
+                  most);
+        reference_free(ref);
+        picture_free(&want);
+        picture_free(&out);
+        scene_free(&s);
+    }
+}
+
+// Also with blades, which do not mirror; wide pixels; Karis average; alpha; small tiles.
+static void same_bits(enum hf_isa isa, struct hf_context *plain)
+{
+    for (unsigned i = 0; i < 8; i++) {
+        struct hf_context *c = context_new(isa, 2, i % 2 ? 16 * (int)(1 + i % 3) : 0, i % 2 ? 20 + (int)i : 0);
+        struct scene s = steps_scene(10 + i);
+        const struct hf_depth depth = picture_radii(&s.depth);
+        struct hf_params p = steps_params();
+        p.run.deterministic = 1;
+        p.max_radius = i % 4 == 3 ? 40 : RADIUS;
+        p.aperture.blades = i % 4 == 1 ? 5 : 0;
+        p.view.pixel_aspect = i % 4 == 2 ? 1.5f : 1;
+        p.gather.karis = i > 3;
+        struct picture want = render(plain, &s.colour, &depth, &p), out = render(c, &s.colour, &depth, &p);
+        CHECK_MSG(picture_same_bits(&want, &out), "%s: case %u: %d samples are not plain C's", hf_isa_name(isa), i,
+                  samples_other(&want, &out));
+        picture_free(&want);
+        picture_free(&out);
+        scene_free(&s);
+        hf_close(&c);
+    }
+}
+
+int main(void)
+{
+    struct hf_context *plain = context_new(HF_ISA_SCALAR, 2, 0, 0);
+    against_double(plain);
+    for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++)
+        if (hf_isa_available((enum hf_isa)isa))
+            same_bits((enum hf_isa)isa, plain);
+    hf_close(&plain);
+    return check_report();
+}
