@@ -367,8 +367,8 @@ HF_INLINE void rows_needed(const struct convolve_job *j, int x, int height, cons
 HF_INLINE void clear_rest(const struct convolve_job *j, int i, int from, int x, int height, const int s, int y0, int y1)
 {
     float *out = job_out(j, i, from, x);
-    for (int y = 0; j->clears && y < height; y++)
-        for (int v = 0; v < s && (y < y0 || y >= y1); v++)
+    for (int y = y0 > 0 ? 0 : y1; j->clears && y < height; y = y + 1 == y0 ? y1 : y + 1)
+        for (int v = 0; v < s; v++)
             vf_store(out + y * j->out_stride[i] + v * VF_N, vf_zero());
 }
 

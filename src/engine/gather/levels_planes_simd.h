@@ -153,6 +153,25 @@ HF_INLINE int area_is_in(const struct hf_levels *l, const int kind, int i, struc
     return hf_level_area(l, i, coc.most * coc.most) > 0 && hf_level_area(l, i - 1, coc.least * coc.least) < 1;
 }
 
+// CoC that can have a share of a level: above `least` and below `most`. Most vectors of a row have none, and comparing their CoC
+// is less than finding that out from shares. A little wide, because shares are rounded.
+struct area_limits {
+    vf least, most;
+};
+
+// times: by what CoC are multiplied before.
+HF_INLINE struct area_limits area_limits_of(const struct hf_levels *l, int i, float times)
+{
+    const float least = i + 1 < l->count ? l->level[i + 1].coc / times * (1 - 4 * FLT_EPSILON) : 0;
+    const float most = i > 0 ? l->level[i - 1].coc / times * (1 + 4 * FLT_EPSILON) : FLT_MAX;
+    return (struct area_limits){vf_set1(least), vf_set1(most)};
+}
+
+HF_INLINE vm area_within(const struct area_limits *a, vf coc)
+{
+    return vm_and(vf_gt(coc, a->least), vf_lt(coc, a->most));
+}
+
 // One row of a level's planes. Returns which blocks of it hold something.
 HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect area, const int kind, int i, int y)
 {
@@ -165,11 +184,11 @@ HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect
     hf_row(&f->buf[kind == AREA_NEAR ? HF_BUF_COLORNEAR4 : HF_BUF_COLORFAR4], s->channels, x0, y, from);
     hf_row(&f->buf[HF_BUF_LEVEL], s->channels, x0, y, to);
     hf_row(&f->buf[HF_BUF_LEVEL_WEIGHT], 2, x0, y, weight);
+    const struct area_limits limits = area_limits_of(l, i, 1);
     uint64_t filled = 0;
     for (int x = 0; x < area.x1 - x0; x += VF_N) {
         const vf most = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR_MOST : HF_AREA_FAR_OF_LIGHT] + x);
-        vf share = kind == AREA_NEAR ? area_share(l, i, most) : area_spread(l, i, most);
-        if (!vm_any(vm_and(vf_gt(share, vf_zero()), vf_gt(most, vf_zero())))) {
+        if (!vm_any(area_within(&limits, most))) {
             for (int c = 0; c < s->channels; c++)
                 vf_store(to[c] + x, vf_zero());
             vf_store(weight[0] + x, vf_zero());
@@ -178,6 +197,7 @@ HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect
             continue;
         }
         filled |= convolve_blocks(x0 + x, x0 + x + VF_N);
+        vf share = kind == AREA_NEAR ? area_share(l, i, most) : area_spread(l, i, most);
         const vf part = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR : HF_AREA_FAR] + x);
         if (karis) {
             vf_store(weight[1] + x, vf_mul(part, share));

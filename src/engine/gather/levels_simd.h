@@ -321,7 +321,11 @@ static void area_far_level_row(const struct hf_frame *f, int i, int x0, int n, i
     const float *weight = all.weight[!hf_fields(f->s)->karis], *coc = hf_at(&f->buf[HF_BUF_SUM], 1, x0, y);
     float *far[4];
     hf_row(&f->buf[HF_BUF_FAR], f->s->channels, x0, y, far);
+    const struct area_limits limits = area_limits_of(l, i, HF_FAR_WIDER);
+    const vf smallest = vf_set1(l->level[l->count - 1].coc);
     for (int x = 0; x < n; x += VF_N) {
+        if (!vm_any(area_within(&limits, vf_max(vf_load(coc + x), smallest))))
+            continue;
         const vf share = area_seen(l, i, vf_load(coc + x));
         const vm counts = vf_gt(share, vf_zero());
         if (!vm_any(counts))
