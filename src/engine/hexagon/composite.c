@@ -57,8 +57,8 @@ static void fields_half(const struct hf_frame *f, int x, int y, struct fields *v
 static float background(const struct fields *v, int c, float own, float p)
 {
     const float front = v->near[4] > 0 ? v->near[c] / v->near[4] : own, some = v->behind[4];
-    const float seen =
-        some > 0 ? hf_lerp(v->behind[c] / some, front, HEXAGON_NOTHING / (some + HEXAGON_NOTHING)) : front;
+    const float nothing = HEXAGON_NOTHING * HEXAGON_NOTHING;
+    const float seen = some > 0 ? hf_lerp(v->behind[c] / some, front, nothing / (some * some + nothing)) : front;
     return hf_lerp(seen, own, hf_saturate(HEXAGON_ALL + p));
 }
 

@@ -205,9 +205,10 @@ struct hex_behind {
 
 HF_INLINE vf hex_background(const struct hex_behind *v, int c, vf near, vf coverage, vf own, vf p)
 {
-    const vf zero = vf_zero(), nothing = vf_set1(HEXAGON_NOTHING);
+    const vf zero = vf_zero(), nothing = vf_set1(HEXAGON_NOTHING * HEXAGON_NOTHING);
     const vf front = vf_select(vf_gt(coverage, zero), vf_div(near, coverage), own);
-    const vf some = vf_lerp(vf_div(v->colour[c], v->weight), front, vf_div(nothing, vf_add(v->weight, nothing)));
+    const vf share = vf_div(nothing, vf_fma(v->weight, v->weight, nothing));
+    const vf some = vf_lerp(vf_div(v->colour[c], v->weight), front, share);
     const vf seen = vf_select(vf_gt(v->weight, zero), some, front);
     return vf_lerp(seen, own, vf_saturate(vf_add(vf_set1(HEXAGON_ALL), p)));
 }

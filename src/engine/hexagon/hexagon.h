@@ -242,8 +242,9 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 // A weight of what lies behind near pixels that counts half; the rest is the near field's colour. A surface that begins to be
 // seen begins with a weight of 0, so the smaller this is the steeper its colour comes in: with 1e-5 within 1e-4 of a pixel of
 // radius, up to 4.5 8-bit codes in one float of a distance. The larger it is, the more of a near bar's light is counted twice in
-// its middle: 0.15 % of a bar as wide as its blur with 1e-4.
-#define HEXAGON_NOTHING 1e-4f
+// its middle. Weights count by their squares: larger ones make up nearly all, and of the bar's light less than 0.1 % is counted
+// twice, which was 0.15 % by weights that came in as slowly.
+#define HEXAGON_NOTHING 6e-5f
 
 // Colours are summed this much darker, so that no sum overflows unless a sample does. A line's weights add up to at
 // most 1 + ln(2048) < 9 times a sample, the two lines of pass 1 to twice that, and those of pass 2 to 9 times their
