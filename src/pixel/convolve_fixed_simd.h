@@ -22,7 +22,7 @@ enum { WEIGHT_N = VF_N == 4 ? 4 : 1 };
 // complete.
 #define RUN(reach) (((reach) + 1) << 12)
 
-// Are these the weights of such rows, whatever their step?
+// Are these the weights of such rows, whatever their step? (A disc of 1 has no runs.)
 HF_INLINE int fixed_are(const struct hf_taps *t, const uint16_t *rows, int r, int disc)
 {
     if ((r > 1 && t->runs != disc) || !t->symmetric || t->nx != r || t->ny != r)

@@ -363,13 +363,20 @@ HF_INLINE void rows_needed(const struct convolve_job *j, int x, int height, cons
         (*y1)--;
 }
 
+HF_INLINE void clear_rows(float *out, ptrdiff_t stride, const int s, int y0, int y1)
+{
+    for (int y = y0; y < y1; y++)
+        for (int v = 0; v < s; v++)
+            vf_store(out + y * stride + v * VF_N, vf_zero());
+}
+
 // Zeros in the rows of a plane that are not needed.
 HF_INLINE void clear_rest(const struct convolve_job *j, int i, int from, int x, int height, const int s, int y0, int y1)
 {
-    float *out = job_out(j, i, from, x);
-    for (int y = y0 > 0 ? 0 : y1; j->clears && y < height; y = y + 1 == y0 ? y1 : y + 1)
-        for (int v = 0; v < s; v++)
-            vf_store(out + y * j->out_stride[i] + v * VF_N, vf_zero());
+    if (!j->clears)
+        return;
+    clear_rows(job_out(j, i, from, x), j->out_stride[i], s, 0, y0);
+    clear_rows(job_out(j, i, from, x), j->out_stride[i], s, y1, height);
 }
 
 // A strip of s vectors from column x of all planes.

@@ -22,11 +22,12 @@ static struct hf_params steps_params(void)
     return p;
 }
 
-// Near on the left, in blocks of all radii; as large as that, far and sharp on the right.
+// Blocks of all radii: near and sharp ones on the left, far ones too on the right. Some scenes have alpha.
 static struct scene steps_scene(unsigned seed)
 {
     struct rng rng = rng_seed(seed);
-    struct scene s = scene_new(&rng, seed % 2 ? SCENE_HIGHLIGHTS : SCENE_BLOCKS, WIDTH, HEIGHT, 3);
+    struct scene s =
+        scene_new(&rng, seed % 2 ? SCENE_HIGHLIGHTS : SCENE_BLOCKS, WIDTH, HEIGHT, 3 + (int)(seed / 2 % 2));
     for (int y = 0; y < HEIGHT; y += 6)
         for (int x = 0; x < WIDTH; x += 10) {
             const float part = rng_range(&rng, -1, 1), r = (x < WIDTH / 2 ? -fabsf(part) : part) * RADIUS;
@@ -58,7 +59,7 @@ static void against_double(struct hf_context *c)
     }
 }
 
-// Also with blades, which do not mirror; wide pixels; Karis average; alpha; small tiles.
+// Also with blades, which do not mirror; wide pixels; Karis average; small tiles.
 static void same_bits(enum hf_isa isa, struct hf_context *plain)
 {
     for (unsigned i = 0; i < 8; i++) {

@@ -170,7 +170,7 @@ static void leaving(struct hf_context *c, int half, float r, int corner)
 // on the bar. Behind the bar the bar's own light makes up 1 / (1 + (w / 6e-5)^2), and the dark wall, of which a weight w is
 // visible, the rest. w is at least that of a neighbourhood of 16 pixels in which 1 of 33 columns is visible, 1e-4, so the bar's
 // makes up hardly more than a quarter. The widest bar reaches as far as its radius. So its middle third leaves hardly a hundredth
-// open, and elsewhere more of the wall is visible: the bound is a twelfth of a hundredth, and some.
+// open, and elsewhere more of the wall is visible: that comes to 0.09 %.
 static void drawn_once(struct hf_context *c, int half)
 {
     static const int widths[] = {2, 6, 12};

@@ -467,9 +467,9 @@ struct picture hexagon_reference(const struct picture *colour, const struct pict
                 b += half ? clamp01(q / 2) * (fc[c] - b) : sample[i].whole * fc[c] - sample[i].colour[c];
             if (q < 0 && cover > 0) {
                 const double front = nc[c] / cover;
-                const double all = some * some + 36e-10,
-                             back = some > 0 ? behind_sample(&seen, c, x, y, half) / some : 0;
-                const double other = (some * some * back + 36e-10 * front) / all;
+                const double back = some > 0 ? behind_sample(&seen, c, x, y, half) / some : 0;
+                const double seen_part = some * some, nothing = 6e-5 * 6e-5;
+                const double other = (seen_part * back + nothing * front) / (seen_part + nothing);
                 b = other + clamp01(2 + q) * (b - other);
             }
             out.plane[c][i] = (float)(cover == 0 ? b : (nc[c] + left * b) / (cover + left));

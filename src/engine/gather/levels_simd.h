@@ -3,19 +3,29 @@
 #include "engine/gather/lights_simd.h"
 #include "engine/gather/tents_simd.h"
 
-// Add a level's plane to a job, as far as taps around r reach: with zeros in rows that hold nothing, and convolved with tents.
+// Zeros in a level's rows that hold nothing, which have not been written. Only tents and columns read such rows.
+static void area_clear_unfilled(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area)
+{
+    const size_t size = (size_t)(area.x1 - area.x0) * sizeof(float);
+    for (int y = area.y0; y < area.y1; y++) {
+        if (rows->level[y - rows->y0].filled)
+            continue;
+        for (int c = 0; c < f->s->channels; c++)
+            memset(hf_at(&f->buf[HF_BUF_LEVEL], c, area.x0, y), 0, size);
+        for (int c = 0; c < 3; c++)
+            memset(hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT], c, area.x0, y), 0, size);
+    }
+}
+
+// Add a level's plane to a job, convolved with the taps' tents.
 static void area_level_plane(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
                              const struct hf_taps *t, struct convolve_job *j, int in, int c, int out)
 {
-    const struct hf_rect all = area_grown(r, t);
-    const struct hf_buf plane = f->buf[in];
-    for (int y = all.y0; y < all.y1; y++)
-        if (!rows->level[y - rows->y0].filled)
-            memset(hf_at(&plane, c, all.x0, y), 0, (size_t)(all.x1 - all.x0) * sizeof(float));
+    const struct hf_buf *plane = &f->buf[in];
     if (t->step > 1)
-        area_tents(f, rows, r, t, &plane, c);
+        area_tents(f, rows, r, t, plane, c);
     convolve_plane(j, f, r, in, c, out, c);
-    j->in[j->planes - 1] -= (t->step - 1) * (plane.stride + 1);
+    j->in[j->planes - 1] -= (t->step - 1) * (plane->stride + 1);
 }
 
 // A level's planes around r, into its sums.
@@ -23,14 +33,17 @@ static void area_convolve_level(const struct hf_frame *f, const struct area_rows
                                 const struct hf_taps *t, int leaves)
 {
     struct convolve_job j = {.row = &rows->level[r.y0 - rows->y0], .x0 = r.x0, .clears = 1};
+    fixed_column *column = area_column(t);
+    if (column || t->step > 1)
+        area_clear_unfilled(f, rows, area_grown(r, t));
+    if (t->step > 1)
+        area_tents_filled(rows, r, t);
     for (int c = 0; c < f->s->channels; c++)
         area_level_plane(f, rows, r, t, &j, HF_BUF_LEVEL, c, HF_BUF_LEVEL_SUM);
     for (int c = 0; c < 3; c++)
         if (c == 0 || (c == 1 && hf_fields(f->s)->karis) || (c == 2 && leaves))
             area_level_plane(f, rows, r, t, &j, HF_BUF_LEVEL_WEIGHT, c, HF_BUF_LEVEL_WEIGHT_SUM);
-    if (t->step > 1)
-        area_tents_filled(rows, r, t);
-    convolve_jobs(f, r, t, area_column(t), rows->work, &j, 1, NULL);
+    convolve_jobs(f, r, t, column, rows->work, &j, 1, NULL);
 }
 
 // Rows of a field's sums: colour, its weight, and the weight without Karis'; without Karis average they are one, the last.

@@ -30,36 +30,8 @@ HF_INLINE void tents_of_rows(const float *const *rows, int n, const int step, fl
     tents(columns, n - 2 * (step - 1), step, out);
 }
 
-// Does a row within half a tent of row y hold anything?
-HF_INLINE uint64_t area_tent_filled(const struct area_rows *rows, int y, int half)
-{
-    uint64_t any = 0;
-    for (int i = -half; i <= half; i++)
-        any |= rows->level[y + i - rows->y0].filled;
-    return any;
-}
-
-// A level's plane convolved in place, as far as taps around r reach. What belongs to a pixel comes to lie where the first of its
-// tent's values was: half a tent to the left of and above its place. Rows that hold nothing are 0.
-static void area_tents(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
-                       const struct hf_taps *t, const struct hf_buf *plane, int c)
-{
-    const int half = t->step - 1, n = r.x1 - r.x0 + 2 * t->rx;
-    for (int y = r.y0 - t->ry + half; y < r.y1 + t->ry - half && !hf_stopped(f->s->stop); y++) {
-        if (!area_tent_filled(rows, y, half))
-            continue;
-        const float *from[HF_MAX_TENT];
-        float *first = hf_at(plane, c, r.x0 - t->rx, y - half);
-        for (int i = 0; i <= 2 * half; i++)
-            from[i] = first + i * plane->stride;
-        if (t->step == 2)
-            tents_of_rows(from, n, 2, first);
-        else
-            tents_of_rows(from, n, 4, first);
-    }
-}
-
-// Which blocks of rows hold something once that has been done to all planes: tents reach into the blocks beside, too.
+// Which blocks of a level's rows will hold something when its planes have been convolved: tents reach half a tent up and down, and
+// into the blocks beside.
 static void area_tents_filled(const struct area_rows *rows, struct hf_rect r, const struct hf_taps *t)
 {
     const int half = t->step - 1;
@@ -76,5 +48,26 @@ static void area_tents_filled(const struct area_rows *rows, struct hf_rect r, co
         for (int i = 0; i + 1 < half; i++)
             above[i] = above[i + 1];
         above[half - 1] = own;
+    }
+}
+
+// A level's plane convolved in place, as far as taps around r reach; the rows know already what will be in them, and what holds
+// nothing is 0. What belongs to a pixel comes to lie where the first of its tent's values was: half a tent to the left of and above
+// its place.
+static void area_tents(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
+                       const struct hf_taps *t, const struct hf_buf *plane, int c)
+{
+    const int half = t->step - 1, n = r.x1 - r.x0 + 2 * t->rx;
+    for (int y = r.y0 - t->ry + half; y < r.y1 + t->ry - half && !hf_stopped(f->s->stop); y++) {
+        if (!rows->level[y - rows->y0].filled)
+            continue;
+        const float *from[HF_MAX_TENT];
+        float *first = hf_at(plane, c, r.x0 - t->rx, y - half);
+        for (int i = 0; i <= 2 * half; i++)
+            from[i] = first + i * plane->stride;
+        if (t->step == 2)
+            tents_of_rows(from, n, 2, first);
+        else
+            tents_of_rows(from, n, 4, first);
     }
 }
