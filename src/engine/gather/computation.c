@@ -158,14 +158,15 @@ static void behind_planes(const struct hf_frame *f, struct hf_rect r, int i)
             const float w = karis(f, x, y);
             const float counts = hf_level_limits(f->s, i) ? *hf_at(&f->buf[HF_BUF_WEIGHT], 2, x, y) : 1;
             const float left = leaves ? hf_level_left(l, i, *hf_at(coc4, HF_AREA_FAR_OF_LIGHT, x, y)) : 0;
-            const float far = leaves ? left * *hf_at(coc4, HF_AREA_FAR, x, y) : 0;
-            const float rest = (1 - *hf_at(coc4, HF_AREA_NEAR, x, y)) - far;
+            const float open = 1 - *hf_at(coc4, HF_AREA_NEAR, x, y), part = hf_open_part(open);
+            const float all = leaves ? left * *hf_at(coc4, HF_AREA_FAR, x, y) : 0, far = all * part;
+            const float rest = (open - all) * part;
             const float weight = rest > 0 && in_frame(f->s, x, y) ? rest : 0;
             for (int c = 0; c < f->s->channels; c++) {
                 const float hidden = leaves ? left * *hf_at(&f->buf[HF_BUF_COLORFAR4], c, x, y) : 0;
                 const float colour =
                     (*hf_at(&f->buf[HF_BUF_COLOR4], c, x, y) - *hf_at(&f->buf[HF_BUF_COLORNEAR4], c, x, y)) - hidden;
-                *hf_at(&f->buf[HF_BUF_LEVEL], c, x, y) = rest > 0 ? (colour * counts) * w : 0;
+                *hf_at(&f->buf[HF_BUF_LEVEL], c, x, y) = rest > 0 ? ((colour * part) * counts) * w : 0;
             }
             *hf_at(level, 0, x, y) = weight * w;
             *hf_at(level, 1, x, y) = weight;

@@ -265,6 +265,12 @@ static struct hf_rect area_touched(const struct area_rows *rows, struct hf_rect 
     return area_around(r, reach, blocks, y0, y1);
 }
 
+HF_INLINE vf area_open_part(vf open)
+{
+    const vf part = vf_saturate(vf_mul(open, vf_set1(1 / HF_OPEN_WHOLE)));
+    return vf_mul(vf_mul(part, part), part);
+}
+
 // What is not near, less what of far samples is left to the far levels. Returns which blocks of the row hold something.
 HF_INLINE uint64_t area_behind_row(const struct hf_frame *f, const struct hf_rect area, int i, int y, const int karis,
                                    const int leaves)
@@ -283,8 +289,8 @@ HF_INLINE uint64_t area_behind_row(const struct hf_frame *f, const struct hf_rec
     hf_row(&f->buf[HF_BUF_LEVEL_WEIGHT], 3, x0, y, weight);
     uint64_t filled = 0;
     for (int x = 0; x < area.x1 - x0; x += VF_N) {
-        vf rest = vf_sub(vf_set1(1), vf_load(coc[HF_AREA_NEAR] + x)), left = vf_zero();
-        if (!vm_any(vf_gt(rest, vf_zero()))) {
+        const vf open = vf_sub(vf_set1(1), vf_load(coc[HF_AREA_NEAR] + x));
+        if (!vm_any(vf_gt(open, vf_zero()))) {
             for (int c = 0; c < s->channels; c++)
                 vf_store(to[c] + x, vf_zero());
             for (int k = 0; k < 3; k++)
@@ -292,17 +298,21 @@ HF_INLINE uint64_t area_behind_row(const struct hf_frame *f, const struct hf_rec
             continue;
         }
         filled |= convolve_blocks(x0 + x, x0 + x + VF_N);
+        const vf part = area_open_part(open);
+        vf rest = open, left = vf_zero();
         if (leaves) {
             left = area_left(l, i, coc[HF_AREA_FAR_OF_LIGHT] + x);
             const vf hidden = vf_mul(left, vf_load(coc[HF_AREA_FAR] + x));
             rest = vf_sub(rest, hidden);
-            vf_store(weight[2] + x, hidden);
+            vf_store(weight[2] + x, vf_mul(hidden, part));
         }
+        rest = vf_mul(rest, part);
         const vm counts = vf_gt(rest, vf_zero());
         for (int c = 0; c < s->channels; c++) {
             vf v = vf_sub(vf_load(colour[c] + x), vf_load(near[c] + x));
             if (leaves)
                 v = vf_sub(v, vf_mul(left, vf_load(far[c] + x)));
+            v = vf_mul(v, part);
             if (lights)
                 v = vf_mul(v, vf_load(lights + x));
             vf_store(to[c] + x, vf_keep(counts, karis ? vf_mul(v, vf_load(w + x)) : v));
