@@ -238,15 +238,33 @@ static int bin_bits(const struct hf_scatter *t, int level, int room)
     return hf_max(room - SHARE + 1 - (int)ceil(log2((double)area)), HF_BIN_BITS);
 }
 
+// The fixed point of a level's bins.
+struct bin_units {
+    int room;   // bits between the unit and the brightest sample of the first bin
+    int spill;  // fewer of the others
+    int bits;   // exponents that the others take
+    int dim;
+};
+
+// The exponents of the first bin. Bins end with the darkest sample, so what is left over is the first bin's: bright
+// samples are few, so few sources belong to two bins.
+static int first_bits(uint32_t exponents, int top, const struct bin_units *u)
+{
+    const int range = exponents ? top - (8 * __builtin_ctz(exponents) - 127) : 0;
+    return range > u->bits + u->spill ? (range - 1) % u->bits + 1 : u->bits + u->spill;
+}
+
 // Make bins from the brightest exponent downwards. top: samples are below 2^top. An alpha of 1 uses the units of
 // weights, so where it is 1 everywhere its sum equals theirs.
-static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits, int room, int dim, int alpha)
+static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, const struct bin_units *u, int alpha)
 {
+    int own = alpha ? u->bits : first_bits(exponents, top, u);
     int faded = top;  // shares of the samples seen so far can be as small as this
     for (bins->count = 0; bins->count < HF_BINS && (exponents || top > faded || !bins->count); bins->count++) {
-        const int b = bins->count, bottom = alpha && top > 1 ? hf_max(top - bits, 1) : top - bits;
+        const int b = bins->count, bottom = alpha && top > 1 ? hf_max(top - own, 1) : top - own;
         for (int c = 0; c < 4; c++) {
-            const int unit = c == 3 ? room - 1 : room - top - dim;
+            const int room = u->room - (c == 3 || alpha || b ? u->spill : 0);
+            const int unit = c == 3 ? room - 1 : room - top - u->dim;
             bins->scale[b][c] = ldexp(1, unit);
             bins->unscale[b][c] = ldexp(1, -unit);
         }
@@ -260,8 +278,9 @@ static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits
         }
         // Leave out whole bins where no sample lies, and no share of one either.
         const int unused = exponents && bottom <= faded ? hf_max(bottom - (8 * k - 119), 0) : 0;
-        top = bottom - (alpha ? unused : unused / bits * bits);
-        bins->least[b] = ldexpf(1, top + dim);
+        top = bottom - (alpha ? unused : unused / u->bits * u->bits);
+        bins->least[b] = ldexpf(1, top + u->dim);
+        own = u->bits;
     }
     bins->least[bins->count - 1] = 0;
 }
@@ -270,17 +289,22 @@ static void set_bins(struct hf_bins *bins, uint32_t exponents, int top, int bits
 static void made(void *own, const struct hf_setup *s, const struct hf_counts *found)
 {
     struct hf_scatter *t = own;
-    // Sums are at most 2^13 times the largest sample.
-    const int spare = t->aperture.headroom + (t->ring > 0 ? 4 : 0) + (t->cat_eye > 0 ? 2 : 0), room = 62 - spare;
-    const int dim = fmaxf(found->largest[0], found->largest[1]) > 0x1p110f ? -14 : 0;
-    t->dim = ldexpf(1, dim);
+    // Sums are at most 2^14 times the largest sample. Known surfaces can double them.
+    const int ring = t->ring <= 0 ? 0 : t->aperture.symmetric ? 6 : 4;
+    struct bin_units u = {.room = 63 - (t->aperture.headroom + ring + (t->cat_eye > 0 ? 2 : 0) + (t->given != NULL)),
+                          .dim = fmaxf(found->largest[0], found->largest[1]) > 0x1p110f ? -14 : 0};
+    t->dim = ldexpf(1, u.dim);
     t->undim = 1 / t->dim;
     t->most = t->dim * FLT_MAX;
     for (int level = 0; level < 2; level++)
         for (int alpha = 0; alpha < 2; alpha++) {
             int top;
             frexpf(found->largest[alpha], &top);
-            set_bins(&t->bins[level][alpha], found->exponents[alpha], top, bin_bits(t, level, room), room, dim, alpha);
+            // Faint parts of bright samples go to lower bins, where several from one pixel each have its largest value:
+            // those of a mixed one's two sides, and at half resolution those of the pixels around.
+            u.spill = level ? 3 : 1;
+            u.bits = bin_bits(t, level, u.room - u.spill);
+            set_bins(&t->bins[level][alpha], found->exponents[alpha], top, &u, alpha);
         }
     // With an alpha of 1 everywhere, its sum is that of the weights.
     t->opaque = s->channels == 4 && !found->transparent && t->groups == 2;

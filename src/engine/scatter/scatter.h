@@ -24,9 +24,9 @@ enum hf_scatter_buf {
 };
 
 // Sums have a fixed point, so samples of very different brightness get sums of their own, called bins. The sums of a
-// bin stay below 2^62 of its units, and every share of its samples is a whole number of units. So sums are exact,
+// bin stay below 2^63 of its units, and every share of its samples is a whole number of units. So sums are exact,
 // whatever else is in the frame. A bin takes at least HF_BIN_BITS exponents, so HF_BINS cover all floats. A frame uses
-// few of them, and never touches the memory of the others.
+// few of them, and never touches the memory of the others. Four sources side by side that belong to two bins cost twice.
 enum { HF_BIN_BITS = 6, HF_BINS = (FLT_MAX_EXP - (FLT_MIN_EXP - FLT_MANT_DIG) + HF_BIN_BITS - 1) / HF_BIN_BITS };
 
 struct hf_bins {
