@@ -287,9 +287,7 @@ void hf_list_sources(struct walk *w, const struct hf_source_row *row, int from, 
 
 void hf_add_back(struct walk *w, const struct hf_backs *b, int x, int to_x, int to_y, float part)
 {
-    const float size = (w->field ? 1 : -1) * b->radius[x], half = hf_half_part(w->t, size);
-    const float weight = hf_field_weight(w->t, size) * (w->level ? half : 1 - half) * (b->share[x] * part) *
-                         hf_scatter_slice_part(&w->slice, size);
+    const float size = (w->field ? 1 : -1) * b->radius[x], weight = hf_back_weight(w, size, b->share[x] * part);
     float v[3] = {0};
     if (!(weight > 0))
         return;

@@ -33,6 +33,47 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
     return r;
 }
 
+// Whether none of four pixels from x on, of n, draws anything. In most cells a slice or the near field has few sources.
+static int none_of_four(const struct hf_source_row *row, int x, int n)
+{
+    const int32_t *p = row->picture + x;
+    return x + 4 <= n && (p[0] & p[1] & p[2] & p[3]) < 0;
+}
+
+// Prepare what lies behind the first samples of pixels, n of row y from x0 on, as another row of sources. Returns 0 if
+// there is nothing. The rows' memory is the first samples', which have been listed.
+static int prepare_backs(struct walk *w, enum hf_backs_set set, int x0, int y, int n, struct hf_source_row *r)
+{
+    const float sign = w->field ? 1 : -1;
+    float **row = w->source[0];
+    int32_t *picture = (int32_t *)row[4];
+    struct hf_backs b;
+    if (!hf_scatter_backs(w->f, set, x0, y, &b))
+        return 0;
+    int x = hf_edges_next(b.share, 0, n), some = 0;
+    if (x < n)
+        memset(picture, 0xff, sizeof *picture * (size_t)n);
+    for (; x < n; x = hf_edges_next(b.share, x + 1, n)) {
+        const float size = sign * b.radius[x], weight = hf_back_weight(w, size, b.share[x]);
+        if (!(weight > 0))
+            continue;
+        row[3][x] = weight;
+        for (int c = 0; c < w->group->channels; c++)
+            row[c][x] = b.colour[w->group->channel[c]][x] * (weight * w->t->dim);
+        picture[x] = hf_picture_number(size * w->group->factor[w->field]);
+        some = 1;
+    }
+    *r = (struct hf_source_row){.x = x0,
+                                .y = y,
+                                .weight = row[3],
+                                .scale = sign * w->group->factor[w->field],
+                                .radius = b.radius,
+                                .picture = picture};
+    for (int c = 0; c < 3; c++)
+        r->colour[c] = c < w->group->channels ? row[c] : w->nothing;
+    return some;
+}
+
 // Draw the sources of full-resolution rows y0 to y1, four columns at a time: all these rows write to nearly the same
 // cache lines, which are fetched from the second level and written back only once. Then draw what lies behind the first
 // samples of pixels.
@@ -42,22 +83,21 @@ static void list_full(struct walk *w, int y0, int y1)
     const float *share[TOGETHER];
     int x0, x1;
     hf_walk_columns(w, &x0, &x1);
+    const int n = x1 - x0;
     for (int y = y0; y < y1; y++) {
-        share[y - y0] = hf_back_shares(w->f, x0, y, x1 - x0);
+        share[y - y0] = hf_back_shares(w->f, x0, y, n);
         row[y - y0] = prepare_row(w, x0, x1, y, share[y - y0]);
     }
-    for (int x = 0; x < x1 - x0 && !hf_stopped(w->f->s->stop); x += 4)
+    for (int x = 0; x < n && !hf_stopped(w->f->s->stop); x += 4)
         for (int i = 0; i < y1 - y0; i++)
-            hf_list_sources(w, &row[i], x, hf_min(x + 4, x1 - x0));
-    hf_flush_sources(w);
-    for (int y = y0, n = x1 - x0; y < y1; y++)
-        for (int i = 0; i < hf_scatter_sets(w->field); i++) {
-            struct hf_backs b;
-            if (!hf_scatter_backs(w->f, i, x0, y, &b))
-                continue;
-            for (int x = hf_edges_next(b.share, 0, n); x < n; x = hf_edges_next(b.share, x + 1, n))
-                hf_add_back(w, &b, x, x0 + x, y, 1);
-        }
+            if (!none_of_four(&row[i], x, n))
+                hf_list_sources(w, &row[i], x, hf_min(x + 4, n));
+    for (int y = y0; y < y1; y++)
+        for (int i = 0; i < hf_scatter_sets(w->field); i++)
+            if (prepare_backs(w, i, x0, y, n, &row[0]))
+                for (int x = 0; x < n && !hf_stopped(w->f->s->stop); x += 4)
+                    if (!none_of_four(&row[0], x, n))
+                        hf_list_sources(w, &row[0], x, hf_min(x + 4, n));
     hf_flush_sources(w);
 }
 

@@ -55,6 +55,13 @@ static inline float hf_scatter_slice_part(const struct hf_scatter_slice *s, floa
            (1 - hf_saturate((r - s->end[0]) / (s->end[1] - s->end[0])));
 }
 
+// How much of a back of radius r, with that share of its pixel, the walk draws.
+static inline float hf_back_weight(const struct walk *w, float r, float share)
+{
+    const float half = hf_half_part(w->t, r);
+    return hf_field_weight(w->t, r) * (w->level ? half : 1 - half) * share * hf_scatter_slice_part(&w->slice, r);
+}
+
 // The columns x0 to x1 of sources that reach the window.
 static inline void hf_walk_columns(const struct walk *w, int *x0, int *x1)
 {
