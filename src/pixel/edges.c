@@ -83,16 +83,14 @@ static uint32_t others(const float *v, int n, float what)
     return any;
 }
 
-int hf_edges_next(const float *share, int i, int n)
+int hf_edges_skip(const float *share, int i, int n)
 {
-    if (!share)
-        return n;
-    if (i < n && share[i] > 0)
-        return i;  // mixed pixels stand side by side
     while (i + 32 <= n && !others(share + i, 32, 0))
         i += 32;
     while (i + 8 <= n && !others(share + i, 8, 0))
         i += 8;
+    if (i + 4 <= n && !others(share + i, 4, 0))
+        i += 4;
     while (i < n && !(share[i] > 0))
         i++;
     return i;

@@ -62,8 +62,16 @@ static inline float hf_edges_between(float v, float a, float b)
     return v < high ? v : high;
 }
 
+// The same past shares that are 0.
+int hf_edges_skip(const float *share, int i, int n);
 // The first share from i on that is not 0, of n in a row; n if there is none. share NULL: all are 0.
-int hf_edges_next(const float *share, int i, int n);
+static inline int hf_edges_next(const float *share, int i, int n)
+{
+    if (!share)
+        return n;
+    // Mixed pixels stand side by side, so the next one is looked at before blocks of them.
+    return i < n && share[i] > 0 ? i : hf_edges_skip(share, i, n);
+}
 
 // 1 / d^4 for 5 x 5 pixels, times HF_EDGES_SCALE; the pixel itself has the weight of its nearest neighbours.
 extern const float hf_edges_weights[5][5];

@@ -38,6 +38,13 @@ static void source_pictures_simd(const float *radius, const float *weight, float
 typedef float source_4f __attribute__((vector_size(16)));
 typedef int32_t source_4i __attribute__((vector_size(16)));
 
+HF_INLINE int source_any(source_4i v)
+{
+    uint64_t half[2];
+    memcpy(half, &v, sizeof half);
+    return (half[0] | half[1]) != 0;
+}
+
 // The bins of four adjacent sources: of each channel by its own brightness, -1 where it is 0 or there is no source;
 // of the weights (3) that of the brightest channel, the first for black. Also the first and the last bin that any
 // falls into.
@@ -45,18 +52,25 @@ HF_INLINE void source_bins(const struct hf_source_row *row, int i, const struct 
                            int *first, int *last)
 {
     const source_4i none = {HF_BINS, HF_BINS, HF_BINS, HF_BINS};
-    source_4i is, brightest = none, darkest = {0, 0, 0, 0};
+    source_4i is, brightest = none, darkest = {0, 0, 0, 0}, n[3] = {{0}};
+    source_4f v[3];
     memcpy(&is, row->picture + i, sizeof is);
     is = is >= 0;
+    for (int c = 0; c < 3; c++)
+        v[c] = (source_4f)((source_4i)v4_load(row->colour[c] + i) & 0x7fffffff);
+    // Most samples are in the first bins, so the darker ones are seldom compared.
+    for (int b = 0; b < bins->count - 1; b++) {
+        const source_4i less[3] = {v[0] < bins->least[b], v[1] < bins->least[b], v[2] < bins->least[b]};
+        if (!source_any(less[0] | less[1] | less[2]))
+            break;
+        for (int c = 0; c < 3; c++)
+            n[c] -= less[c];
+    }
     for (int c = 0; c < 3; c++) {
-        source_4i n = {0, 0, 0, 0};
-        const source_4f v = (source_4f)((source_4i)v4_load(row->colour[c] + i) & 0x7fffffff);
-        for (int b = 0; b < bins->count - 1; b++)
-            n -= v < bins->least[b];
-        const source_4i some = is & (v > 0), less = some & (n < brightest), more = some & (n > darkest);
-        bin[c] = (n & some) | ~some;
-        brightest = (n & less) | (brightest & ~less);
-        darkest = (n & more) | (darkest & ~more);
+        const source_4i some = is & (v[c] > 0), less = some & (n[c] < brightest), more = some & (n[c] > darkest);
+        bin[c] = (n[c] & some) | ~some;
+        brightest = (n[c] & less) | (brightest & ~less);
+        darkest = (n[c] & more) | (darkest & ~more);
     }
     brightest &= brightest < HF_BINS;  // black
     bin[3] = (brightest & is) | ~is;
@@ -104,7 +118,7 @@ static void list_row_simd(struct hf_splats lists[HF_BINS], const struct hf_sourc
         source_bins(row, i, bins, bin, &first, &last);
         for (int b = first; b <= last; b++) {
             const source_4i any = (bin[0] == b) | (bin[1] == b) | (bin[2] == b) | (bin[3] == b);
-            if (!(any[0] | any[1] | any[2] | any[3]))
+            if (!source_any(any))
                 continue;
             struct hf_splats *list = &lists[b];
             int n = list->count;
