@@ -244,6 +244,47 @@ static void opaque(struct hf_context *c, int half)
     }
 }
 
+// As much as can lie in one place: all pixels up to a distance are blurred just so far that they reach it. The sums there are the
+// largest that their fixed point must hold. Beyond that they wrap around, to another sign; 1e-4 is far more than what
+// roundings of 22-bit shares leave, and far less than that.
+static void piled_up(struct hf_context *c, int half)
+{
+    static const struct hf_aperture_params looks[] = {{.squeeze = 1},
+                                                      {.squeeze = 0.5f},
+                                                      {.squeeze = 2},
+                                                      {.squeeze = 1, .blades = 3},
+                                                      {.squeeze = 1, .ring = 0.95f},
+                                                      {.squeeze = 1, .cat_eye = 1}};
+    static const float reaches[] = {3.9f, 11.9f, 35.9f, 60};
+    for (int i = 0; i < 6 * 4 * 4 * 2; i++) {
+        const float reach = reaches[i / 8 % 4], beyond = 0.25f * (float)(i / 2 % 4), sign = i % 2 ? -1 : 1;
+        const int size = 2 * (int)reach + 20, middle = size / 2;
+        struct picture colour = picture_new(size, size, 4), radius = picture_new(size, size, 1);
+        for (int ch = 0; ch < 4; ch++)
+            picture_fill(&colour, ch, nextafterf(2, 0));
+        for (int k = 0; k < size * size; k++) {
+            const float distance = hypotf((float)(k % size - middle), (float)(k / size - middle));
+            radius.plane[0][k] = sign * fminf(fmaxf(distance + beyond, 0.75f), reach);
+        }
+        const struct hf_depth depth = picture_radii(&radius);
+        struct hf_params p = scene_params();
+        p.engine = HF_ENGINE_SCATTER;
+        p.max_radius = HF_DERIVE;
+        p.scatter.resolution = half ? HF_RESOLUTION_HALF : HF_RESOLUTION_FULL;
+        p.aperture = looks[i / 32];
+        struct picture out = render(c, &colour, &depth, &p);
+        double worst = 0;
+        for (int ch = 0; ch < 4; ch++)
+            for (int k = 0; k < size * size; k++)
+                worst = worse(worst, fabs((double)out.plane[ch][k] / 2 - 1));
+        CHECK_MSG(worst <= 1e-4, "half %d, look %d, %g pixels, %g beyond: a constant is %g off", half, i / 32,
+                  (double)(sign * reach), (double)beyond, worst);
+        picture_free(&out);
+        picture_free(&colour);
+        picture_free(&radius);
+    }
+}
+
 int main(void)
 {
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
@@ -256,6 +297,7 @@ int main(void)
         crops(c, half);
         largest(c, half);
         opaque(c, half);
+        piled_up(c, half);
     }
     hf_close(&c);
     return check_report();
