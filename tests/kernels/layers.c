@@ -94,6 +94,7 @@ static void sums_of(const struct world *w, enum arena a, int i, float *sum[7])
 static void taps_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     struct hf_hidden_tap tap[3];
+    const struct hf_hidden_tap *const taps[3] = {&tap[0], &tap[1], &tap[2]};
     float *sum[7];
     sums_of(w, a, IN, sum);
     for (int i = 0; i < 3; i++) {
@@ -101,9 +102,10 @@ static void taps_call(const struct world *w, const struct kernels *k, enum arena
                                         .scale = now.scale / (float)(1 << i),
                                         .part = now.part / (float)(1 << i),
                                         .whole = (float)(4 << i)};
+        tap[i].least = fmaxf(tap[i].from, 1);
         set_of(w, a, 7 + 6 * i, (float **)tap[i].in);
     }
-    k->layers.taps(tap, now.rows % 4, now.channels, line(w, a, 6), w->n, sum);
+    k->layers.taps(taps, now.rows % 4, 0, now.channels, line(w, a, 6), w->n, sum);
 }
 
 // Sums begin with 0, which has no sign.
@@ -140,6 +142,8 @@ static void between_call(const struct world *w, const struct kernels *k, enum ar
     set_of(w, a, 0, in);
     for (int i = 0; i < 8; i++)
         l.side[i / 4][i % 4] = line(w, a, 6 * i) - line(w, a, 0);
+    for (int i = 0; i < 4; i++)
+        l.least[i] = hf_layers_line_least(l.away[i]);
     sums_of(w, a, IN, sum);
     k->layers.between(&l, l.steps, (const float *const *)in, now.channels, line(w, a, 48), w->n, sum);
 }

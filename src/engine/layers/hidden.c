@@ -106,27 +106,28 @@ void hf_layers_merge_c(const float *const in[3][6], int channels, float slope, i
     }
 }
 
-static void add_tap(const struct hf_hidden_tap *tap, int channels, const float *nearest, int n, float *const sum[7])
+static void add_tap(const struct hf_hidden_tap *tap, ptrdiff_t at, int channels, const float *nearest, int n,
+                    float *const sum[7])
 {
     const float *const *in = tap->in;
-    for (int x = 0; x < n; x++) {
-        const float behind = in[5][x] - nearest[x];
+    for (int x = 0; x < n; x++, at++) {
+        const float behind = in[5][at] - nearest[x];
         const float a = hf_saturate((behind - tap->from) * tap->scale);
-        const float v = tap->part * a * hf_saturate(9 * in[4][x]) * hf_layers_hides(behind - 1);
+        const float v = tap->part * a * hf_saturate(9 * in[4][at]) * hf_layers_hides(behind - 1);
         const float w = v > HF_LAYERS_SOME ? v : 0;
         for (int c = 0; c < channels; c++)
-            sum[c][x] = sum[c][x] + w * in[c][x];
+            sum[c][x] = sum[c][x] + w * in[c][at];
         sum[4][x] = sum[4][x] + w;
-        sum[5][x] = w > 0 ? sum[5][x] + w * in[5][x] : sum[5][x];
+        sum[5][x] = w > 0 ? sum[5][x] + w * in[5][at] : sum[5][x];
         sum[6][x] = sum[6][x] + w * tap->whole;
     }
 }
 
-void hf_layers_taps_c(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
-                      float *const sum[7])
+void hf_layers_taps_c(const struct hf_hidden_tap *const *tap, int count, ptrdiff_t at, int channels,
+                      const float *nearest, int n, float *const sum[7])
 {
     for (int i = 0; i < count; i++)
-        add_tap(&tap[i], channels, nearest, n, sum);
+        add_tap(tap[i], at, channels, nearest, n, sum);
 }
 
 // The first surface behind `nearest` on one side of a line; several samples may make it up. end: weighted sums of

@@ -57,10 +57,11 @@ static inline float hf_layers_hides(float more)
 enum { HF_LAYERS_STEPS = 12, HF_LAYERS_LINES = 4 };
 
 // A tap of a level: its samples (colour, weight (4), radius (5)) and their weight, `part` times a ramp: scale times how
-// far they lie behind the nearest surface, less `from`. whole: how much of a hidden sample's coverage that weight gives.
+// far they lie behind the nearest surface, less `from`. whole: how much of a hidden sample's coverage that weight gives. What lies
+// no farther behind than `least` has no weight.
 struct hf_hidden_tap {
     const float *in[6];
-    float from, scale, part, whole;
+    float from, scale, part, whole, least;
 };
 
 // Behind an edge a lens sees as many pixels as the two surfaces' radii differ by. Level j finds what is up to 2^(j+2) - 2
@@ -73,12 +74,17 @@ static inline float hf_layers_level_from(int j)
 }
 
 // A line through a sample: the offsets of the samples some steps away on either side, and their distance in half-resolution
-// pixels.
+// pixels. What lies no farther behind the nearest surface than `least` is not seen so far away.
 struct hf_hidden_line {
     int steps;
     ptrdiff_t side[2][HF_LAYERS_STEPS];
-    float away[HF_LAYERS_STEPS];
+    float away[HF_LAYERS_STEPS], least[HF_LAYERS_STEPS];
 };
+static inline float hf_layers_line_least(float away)
+{
+    const float least = 2.999f * (away - 1);  // a little less than what counts, as that is rounded
+    return least > 1 ? least : 1;
+}
 
 // A sample that taps have just reached covers nothing yet; it covers fully from 1 / REACHED of a tap on.
 #define HF_LAYERS_REACHED 4

@@ -135,8 +135,9 @@ HF_INLINE vf layers_hides(vf more)
     return vf_saturate(vf_add(more, more));
 }
 
-HF_INLINE void layers_taps_of(const struct hf_hidden_tap *tap, int count, const int channels, const float *nearest,
-                              int n, float *const sum[7])
+// Most taps meet nothing that lies far enough behind: a comparison passes over those.
+HF_INLINE void layers_taps_of(const struct hf_hidden_tap *const *tap, int count, ptrdiff_t at, const int channels,
+                              const float *nearest, int n, float *const sum[7])
 {
     for (int x = 0; x < n; x += VF_N) {
         const vf from = vf_load(nearest + x);
@@ -145,21 +146,22 @@ HF_INLINE void layers_taps_of(const struct hf_hidden_tap *tap, int count, const 
             if (c < channels || c > 3)
                 all[c] = vf_load(sum[c] + x);
         for (int i = 0; i < count; i++) {
-            const float *const *in = tap[i].in;
-            const vf r = vf_load(in[5] + x), behind = vf_sub(r, from);
-            const vf t = vf_max(vf_mul(vf_sub(behind, vf_set1(tap[i].from)), vf_set1(tap[i].scale)), vf_zero());
-            const vf a = vf_min(t, vf_set1(1)), full = vf_min(vf_mul(vf_set1(9), vf_load(in[4] + x)), vf_set1(1));
-            const vf v =
-                vf_mul(vf_mul(vf_mul(vf_set1(tap[i].part), a), full), layers_hides(vf_sub(behind, vf_set1(1))));
+            const struct hf_hidden_tap *t = tap[i];
+            const vf r = vf_load(t->in[5] + at + x), behind = vf_sub(r, from);
+            if (!vm_any(vf_gt(behind, vf_set1(t->least))))
+                continue;
+            const vf a = vf_saturate(vf_mul(vf_sub(behind, vf_set1(t->from)), vf_set1(t->scale)));
+            const vf full = vf_min(vf_mul(vf_set1(9), vf_load(t->in[4] + at + x)), vf_set1(1));
+            const vf v = vf_mul(vf_mul(vf_mul(vf_set1(t->part), a), full), layers_hides(vf_sub(behind, vf_set1(1))));
             const vm some = vf_gt(v, vf_set1(HF_LAYERS_SOME));
             if (!vm_any(some))
                 continue;
             const vf w = vf_keep(some, v);
             for (int c = 0; c < channels; c++)
-                all[c] = vf_fma(w, vf_load(in[c] + x), all[c]);
+                all[c] = vf_fma(w, vf_load(t->in[c] + at + x), all[c]);
             all[4] = vf_add(all[4], w);
             all[5] = vf_select(some, vf_fma(w, r, all[5]), all[5]);
-            all[6] = vf_fma(w, vf_set1(tap[i].whole), all[6]);
+            all[6] = vf_fma(w, vf_set1(t->whole), all[6]);
         }
         for (int c = 0; c < 7; c++)
             if (c < channels || c > 3)
@@ -167,10 +169,10 @@ HF_INLINE void layers_taps_of(const struct hf_hidden_tap *tap, int count, const 
     }
 }
 
-static void layers_taps_simd(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
-                             float *const sum[7])
+static void layers_taps_simd(const struct hf_hidden_tap *const *tap, int count, ptrdiff_t at, int channels,
+                             const float *nearest, int n, float *const sum[7])
 {
-    HF_WITH_CHANNELS(channels, layers_taps_of(tap, count, CHANNELS, nearest, n, sum));
+    HF_WITH_CHANNELS(channels, layers_taps_of(tap, count, at, CHANNELS, nearest, n, sum));
 }
 
 HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, int steps, const float *const in[6],
@@ -180,13 +182,14 @@ HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, int ste
     vf open = vf_keep(vf_lt(nearest, vf_set1(HUGE_VALF)), vf_set1(1)), whole = vf_zero();
     for (int i = 0; i < 6; i++)
         end[i] = vf_zero();
-    for (int i = 0; i < steps && vm_any(vf_gt(open, vf_zero())); i++) {
+    for (int i = 0; i < steps; i++) {
         const ptrdiff_t at = line->side[side][i] + x;
-        const vf r = vf_load(in[5] + at), behind = vf_sub(r, nearest), off = vf_set1(1 - line->away[i]);
-        const vf hides = layers_hides(vf_sub(behind, vf_set1(1)));
-        const vf sees = vf_mul(hides, vf_saturate(vf_fma(behind, vf_set1(1.0f / 3), off)));
-        if (!vm_any(vf_gt(sees, vf_zero())))
+        const vf r = vf_load(in[5] + at), behind = vf_sub(r, nearest);
+        // Most steps meet nothing that lies far enough behind.
+        if (!vm_any(vf_gt(behind, vf_set1(line->least[i]))))
             continue;
+        const vf hides = layers_hides(vf_sub(behind, vf_set1(1))), off = vf_set1(1 - line->away[i]);
+        const vf sees = vf_mul(hides, vf_saturate(vf_fma(behind, vf_set1(1.0f / 3), off)));
         const vf part = vf_mul(open, vf_mul(vf_saturate(vf_mul(vf_set1(9), vf_load(in[4] + at))), sees));
         open = vf_sub(open, part);
         whole = vf_add(whole, part);
@@ -194,6 +197,8 @@ HF_INLINE vf layers_side_of(const struct hf_hidden_line *line, int side, int ste
             end[c] = vf_fma(part, vf_load(in[c] + at), end[c]);
         end[4] = vf_fma(part, r, end[4]);
         end[5] = vf_fma(part, vf_set1(line->away[i]), end[5]);
+        if (!vm_any(vf_gt(open, vf_zero())))
+            break;
     }
     return whole;
 }

@@ -30,10 +30,11 @@ typedef void hf_layers_quads(const float *const seen[2][6], const float *const m
 // Three samples of each lane become one: the mean of those whose radii lie within about 1 / slope of the farthest. out
 // must not be one of in.
 typedef void hf_layers_merge(const float *const in[3][6], int channels, float slope, int n, float *const out[6]);
-// Add the taps of levels to the sums (colour, weight (4), radius (5), coverage (6)), one tap after the other.
+// Add the taps of levels to the sums (colour, weight (4), radius (5), coverage (6)), one tap after the other, from their samples
+// number `at` on.
 struct hf_hidden_tap;
-typedef void hf_layers_taps(const struct hf_hidden_tap *tap, int count, int channels, const float *nearest, int n,
-                            float *const sum[7]);
+typedef void hf_layers_taps(const struct hf_hidden_tap *const *tap, int count, ptrdiff_t at, int channels,
+                            const float *nearest, int n, float *const sum[7]);
 // Add the surfaces behind `nearest` that continue between both sides of a line to the sums: of n samples in[] (colour, weight
 // (4), radius (5)), no farther than the line's first steps.
 struct hf_hidden_line;

@@ -23,7 +23,7 @@ struct band {
     int reach;
     struct hf_layers_set level[HF_LAYERS_LEVELS], across, found;
     struct hf_hidden_line line[HF_LAYERS_LINES];
-    struct hf_hidden_tap tap[HF_LAYERS_LEVELS][9];  // without samples
+    struct hf_hidden_tap tap[HF_LAYERS_LEVELS][9];  // with the samples of a row
     float *nearest;                                 // least visible radius in each quad; `width` quads per row
     int width;
     // Blocks; (0, 0) is the band's first, and there are more around it. farthest: largest radius in a block; within:
@@ -293,6 +293,7 @@ static void make_lines(struct band *b)
             line->side[0][i] = step[i] * apart;
             line->side[1][i] = -step[i] * apart;
             line->away[i] = (float)step[i] * (k < 2 ? 1 : 1.41421356f);
+            line->least[i] = hf_layers_line_least(line->away[i]);
         }
     }
 }
@@ -333,9 +334,21 @@ static void make_taps(struct band *b)
             const int of = (i % 3 != 1) + (i / 3 != 1);
             const float away = distance[of], step = (float)(2 << j), full = (of || !j ? away + 0.5f : 1.5f) * step,
                         from = fmaxf((away - 0.5f) * step, hf_layers_level_from(j));
-            b->tap[j][i] = (struct hf_hidden_tap){
-                .from = from, .scale = 1 / (full - from), .part = part * share[of], .whole = HF_LAYERS_REACHED / part};
+            b->tap[j][i] = (struct hf_hidden_tap){.from = from,
+                                                  .scale = 1 / (full - from),
+                                                  .part = part * share[of],
+                                                  .whole = HF_LAYERS_REACHED / part,
+                                                  .least = fmaxf(from, 1)};
         }
+}
+
+// The taps of a row: with its samples, from column 0 on.
+static void place_taps(struct band *b, int y)
+{
+    for (int j = 0; j < b->l->levels; j++)
+        for (int i = 0; i < 9; i++)
+            planes_of(&b->level[j], b->l->channels, (i % 3 - 1) * (1 << j), row_of(b, j, y + (i / 3 - 1) * (1 << j)),
+                      (float **)b->tap[j][i].in);
 }
 
 static void find(const struct band *b, int x, int n, int y, int levels)
@@ -350,18 +363,13 @@ static void find(const struct band *b, int x, int n, int y, int levels)
         memset(sum[i], 0, sizeof(float) * (size_t)(n + BLOCK));  // clears the rest of the last vector too
     }
     const float behind = farthest_behind(b, nearest, x, n, y);
-    struct hf_hidden_tap taps[9 * HF_LAYERS_LEVELS];
+    const struct hf_hidden_tap *taps[9 * HF_LAYERS_LEVELS];
     int count = 0;
-    for (int j = 0; j < levels && behind > 1; j++)
-        for (int i = 0; i < 9; i++) {
-            if (!(behind > b->tap[j][i].from))
-                continue;
-            struct hf_hidden_tap *tap = &taps[count++];
-            *tap = b->tap[j][i];
-            planes_of(&b->level[j], channels, x + (i % 3 - 1) * (1 << j), row_of(b, j, y + (i / 3 - 1) * (1 << j)),
-                      (float **)tap->in);
-        }
-    k->taps(taps, count, channels, nearest, n, sum);
+    for (int j = 0; j < levels; j++)
+        for (int i = 0; i < 9; i++)
+            if (behind > b->tap[j][i].least)
+                taps[count++] = &b->tap[j][i];
+    k->taps(taps, count, x, channels, nearest, n, sum);
     find_between(b, nearest, behind, x, n, y, sum);
     const float *radius[4], *weight[4];
     hf_layers_quad_rows(b->f, x, y, radius, weight);
@@ -405,12 +413,15 @@ static int is_behind(const struct band *b, int block, int y)
 }
 
 // Search a row of the band where one of a block's quads needs it. Beyond the frame nothing is hidden.
-static void find_row(const struct band *b, int y)
+static void find_row(struct band *b, int y)
 {
     const uint8_t *needed = needed_in(b, y);
     float *weight = b->found.weight + y * b->found.stride;
+    int any = 0;
     for (int i = 0; i < b->columns; i++)
-        b->wide[i] = needed[i] && is_behind(b, i, y) ? needed[i] : 0;
+        any |= b->wide[i] = needed[i] && is_behind(b, i, y) ? needed[i] : 0;
+    if (any)
+        place_taps(b, y);
     for (struct run run = {0}; !hf_stopped(b->f->s->stop) && next_run(b, b->wide, &run);)
         if (run.needed)
             find(b, run.x, run.n, y, run.needed);
@@ -485,7 +496,7 @@ static void begin_softly(const struct band *b, int y)
 }
 
 // Search and smooth rows r into two buffers. again: another search will look behind what was found.
-static void search(const struct band *b, struct hf_rect r, int colour, int at, int again)
+static void search(struct band *b, struct hf_rect r, int colour, int at, int again)
 {
     for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
         find_row(b, y);
