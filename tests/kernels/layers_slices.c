@@ -151,20 +151,21 @@ void disc_make(struct world *w)
     int n = rng_int(r, -1, 2);
     for (int d = now.slice.rows - 1; d >= 0; d--) {
         now.disc[d] = (struct hf_disc_row){n, rng_float(r, 0, 1)};
+        now.slice.reach = n + 1;
         n = hf_min(n + rng_int(r, 0, 3), MOST);
     }
     now.from = rng_int(r, -DISC_ROWS, 0);
     now.to = rng_int(r, now.from, DISC_ROWS + 1);
     for (int i = 0; i < 2; i++)
         fill(w, i, -MOST - 2, w->n + MOST + 2, COLOUR);
-    // Few sources; sums begin with 0, so none is -0.
-    now.slice.sparse = rng_one_in(r, 2);
-    for (int i = 0; now.slice.sparse && i < 2; i++)
+    // Often few sources; sums begin with 0, so none is -0.
+    const int sparse = rng_one_in(r, 2);
+    for (int i = 0; sparse && i < 2; i++)
         for (int x = -MOST - 2; x < w->n + MOST + 2; x++)
             line(w, ARENA_MADE, i)[x] = rng_one_in(r, 40) ? line(w, ARENA_MADE, i)[x] : 0;
     for (int i = 0; i < 2 * DISC_ROWS + 2; i++) {
         fill(w, IN + i, 0, w->n, COLOUR);
-        for (int x = 0; now.slice.sparse && x < w->n; x++)
+        for (int x = 0; x < w->n; x++)
             line(w, ARENA_MADE, IN + i)[x] += 0.0f;
         put(w, IN + i, w->n, 32);
     }

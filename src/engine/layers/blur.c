@@ -34,12 +34,18 @@ void hf_layers_fold_c(const float *in, int n, float *out)
         out[x] = in[2 * x] + in[2 * x + 1];
 }
 
+// The sources `away` pixels from x on either side; at x there is one.
+static float pair_of(const float *in, int x, int away)
+{
+    return away ? in[x - away] + in[x + away] : in[x];
+}
+
 // A row of sources' part of one row of the disc. sum holds the samples up to `have` pixels from x; it grows as needed.
 static float disc_row(const float *in, int x, struct hf_disc_row row, int *have, float *sum)
 {
     for (; *have < row.n; ++*have)
-        *sum = *have < 0 ? in[x] : *sum + (in[x - *have - 1] + in[x + *have + 1]);
-    return row.f * (in[x - *have - 1] + in[x + *have + 1]) + *sum;
+        *sum = *sum + pair_of(in, x, *have + 1);
+    return row.f * pair_of(in, x, *have + 1) + *sum;
 }
 
 void hf_layers_disc_c(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,

@@ -82,65 +82,96 @@ static void layers_fold_simd(const float *in, int n, float *out)
     hf_layers_fold_c(in + 2 * x, n - x, out + x);
 }
 
-// Draws two rows of sources at once, `side` vectors side by side: their contributions to a row of the result are added
-// in registers. Where a sparse slice adds nothing, the result is neither read nor written.
-HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, const float *lower, const int side,
-                              const int sparse, int from, int to, float *out, ptrdiff_t stride)
+// Whether a pixel within reach of a vector differs from 0 in either row.
+static int layers_reached(const float *upper, const float *lower, int reach)
 {
-    // Index 0 is the upper row, 1 the lower one. pair: the sum of the next pixel on either side of those in sum.
-    vf sum[2][LAYERS_SIDE], last[2][LAYERS_SIDE], pair[2][LAYERS_SIDE];
-    const float *const row[2] = {upper, lower};
+    vi any = vi_or(vi_load(upper + reach), vi_load(lower + reach));
+    for (int x = -reach; x < reach; x += VF_N)
+        any = vi_or(any, vi_or(vi_load(upper + x), vi_load(lower + x)));
+    return vi_any(any);
+}
+
+// Two rows of sources, `side` vectors side by side. Index 0 is the upper row, 1 the lower one. sum: of the pixels up to `have`
+// from each; pair: the sum of the next one on either side, but the pixel itself while there are none.
+struct layers_disc {
+    const float *row[2];
+    vf sum[2][LAYERS_SIDE], pair[2][LAYERS_SIDE];
+    ptrdiff_t have;
+};
+
+// What both rows add as row `part` of the disc.
+HF_INLINE void layers_disc_part(struct layers_disc *s, const int side, const struct hf_disc_row *part,
+                                vf to[2][LAYERS_SIDE])
+{
+    for (; s->have < part->n; s->have++)
+        for (int i = 0; i < 2; i++)
+            for (int j = 0; j < side; j++) {
+                const float *p = s->row[i] + j * VF_N;
+                s->sum[i][j] = vf_add(s->sum[i][j], s->pair[i][j]);
+                s->pair[i][j] = vf_add(vf_load(p - s->have - 2), vf_load(p + s->have + 2));
+            }
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < side; j++)
+            to[i][j] = vf_fma(vf_set1(part->f), s->pair[i][j], s->sum[i][j]);
+}
+
+// Adds what a source row adds now, and the other one added before.
+HF_INLINE void layers_disc_add(float *out, const int side, const vf now[LAYERS_SIDE], const vf last[LAYERS_SIDE])
+{
+    for (int j = 0; j < side; j++)
+        vf_store(out + j * VF_N, vf_add(vf_load(out + j * VF_N), vf_add(now[j], last[j])));
+}
+
+// Draws two rows of sources at once: their contributions to a row of the result are added in registers.
+HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, const float *lower, const int side,
+                              int from, int to, float *out, ptrdiff_t stride)
+{
+    struct layers_disc rows = {.row = {upper, lower}, .have = -1};
+    vf one[2][LAYERS_SIDE], two[2][LAYERS_SIDE];
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < side; j++) {
-            const vf middle = vf_load(row[i] + j * VF_N);
-            sum[i][j] = last[i][j] = vf_zero();
-            pair[i][j] = vf_add(middle, middle);
+            rows.sum[i][j] = two[i][j] = vf_zero();
+            rows.pair[i][j] = vf_load(rows.row[i] + j * VF_N);
         }
-    const int least = hf_layers_least_row(from, to);
-    int have = -1;
-    for (int d = s->rows - 1; d >= least; d--) {
-        const struct hf_disc_row part = s->row[d];
-        for (; have < part.n; have++)
-            for (int i = 0; i < 2; i++)
-                for (int j = 0; j < side; j++) {
-                    const float *p = row[i] + j * VF_N;
-                    sum[i][j] = have < 0 ? vf_load(p) : vf_add(sum[i][j], pair[i][j]);
-                    pair[i][j] = vf_add(vf_load(p - have - 2), vf_load(p + have + 2));
-                }
-        vf v[2][LAYERS_SIDE];
+    // From row `whole` of the disc on, all it adds is among from..to. Such rows are drawn in pairs, down to row 0.
+    const int last = s->rows - 1, whole = hf_min(hf_min(-from, to - 2), last),
+              least = whole < 0 ? hf_layers_least_row(from, to) : (whole + 1) & ~1;
+    const struct hf_disc_row *part = s->row + last;
+    float *above = out - last * stride, *below = out + (last + 1) * stride;
+    int d = last;
+    for (; d >= least; d--, part--, above += stride, below -= stride) {
+        layers_disc_part(&rows, side, part, one);
+        if (-d >= from && -d < to)
+            layers_disc_add(above, side, one[0], two[1]);
+        if (d + 1 >= from && d + 1 < to)
+            layers_disc_add(below, side, one[1], two[0]);
         for (int i = 0; i < 2; i++)
             for (int j = 0; j < side; j++)
-                v[i][j] = vf_fma(vf_set1(part.f), pair[i][j], sum[i][j]);
-        for (int i = 0; i < 2; i++) {
-            const int y = i ? d + 1 : -d;
-            for (int j = 0; y >= from && y < to && j < side; j++) {
-                float *o = out + y * stride + j * VF_N;
-                const vf more = vf_add(v[i][j], last[!i][j]);
-                if (!sparse || vm_any(vf_ne(more, vf_zero())))
-                    vf_store(o, vf_add(vf_load(o), more));
-            }
-        }
-        for (int i = 0; i < 2; i++)
-            for (int j = 0; j < side; j++)
-                last[i][j] = v[i][j];
+                two[i][j] = one[i][j];
+    }
+    for (; whole >= 0 && d > 0; d -= 2, part -= 2, above += 2 * stride, below -= 2 * stride) {
+        layers_disc_part(&rows, side, part, one);
+        layers_disc_add(above, side, one[0], two[1]);
+        layers_disc_add(below, side, one[1], two[0]);
+        layers_disc_part(&rows, side, part - 1, two);
+        layers_disc_add(above + stride, side, two[0], one[1]);
+        layers_disc_add(below - stride, side, two[1], one[0]);
     }
 }
 
-HF_INLINE void layers_disc_all(const struct hf_slice *s, const float *upper, const float *lower, int n,
-                               const int sparse, int from, int to, float *out, ptrdiff_t stride)
-{
-    int x = 0;
-    for (; x + LAYERS_SIDE * VF_N <= n; x += LAYERS_SIDE * VF_N)
-        layers_disc_of(s, upper + x, lower + x, LAYERS_SIDE, sparse, from, to, out + x, stride);
-    for (; x < n; x += VF_N)
-        layers_disc_of(s, upper + x, lower + x, 1, sparse, from, to, out + x, stride);
-}
-
+// Vectors that no source reaches get nothing: spans are wider than their sources need, and small things fill few pixels.
 static void layers_disc_simd(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
                              float *out, ptrdiff_t stride)
 {
-    if (s->sparse)
-        layers_disc_all(s, upper, lower, n, 1, from, to, out, stride);
-    else
-        layers_disc_all(s, upper, lower, n, 0, from, to, out, stride);
+    int x = 0;
+    while (x < n)
+        if (!layers_reached(upper + x, lower + x, s->reach)) {
+            x += VF_N;
+        } else if (x + LAYERS_SIDE * VF_N <= n) {
+            layers_disc_of(s, upper + x, lower + x, LAYERS_SIDE, from, to, out + x, stride);
+            x += LAYERS_SIDE * VF_N;
+        } else {
+            layers_disc_of(s, upper + x, lower + x, 1, from, to, out + x, stride);
+            x += VF_N;
+        }
 }

@@ -55,7 +55,7 @@ static void make_disc(struct hf_slice *s, double r, double wide, struct hf_disc_
         const double h = r > 0 ? (hf_half_disc(r, d + 0.5) - hf_half_disc(r, d - 0.5)) * wide : 0.5;
         const double whole = floor(h - 0.5);
         row[d].n = h < 0.5 ? -1 : (int)whole;
-        row[d].f = (float)(h < 0.5 ? h : h - 0.5 - whole);
+        row[d].f = (float)(h < 0.5 ? 2 * h : h - 0.5 - whole);
         sum += (d ? 4 : 2) * h;
         s->reach = row[d].n + 1 > s->reach ? row[d].n + 1 : s->reach;
     }
