@@ -16,7 +16,8 @@ HF_INLINE void layers_ask_for(const float *const in[6], const float *share, ptrd
 }
 
 HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
-                               const int rows, const int channels, int n, int add, float *const out[5], uint8_t *any)
+                               const int rows, const int channels, const int whole, int n, int add, float *const out[5],
+                               uint8_t *any)
 {
     const vf radius = vf_set1(s->radius), before = vf_set1(s->before), after = vf_set1(s->after);
     const vf square = vf_set1(s->square), before_square = vf_set1(s->before_square);
@@ -27,20 +28,25 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
             sum[c] = vf_zero();
         for (int y = 0; y < rows; y++) {
             const ptrdiff_t at = y * stride + x;
-            const vf r = vf_load(in[5] + at), r2 = vf_mul(r, r);
-            const vf weight = in[4] ? vf_load(in[4] + at) : vf_set1(1);
+            const vf r = vf_load(in[5] + at), weight = whole ? vf_set1(1) : vf_load(in[4] + at);
             if (x % 16 == 0)
                 layers_ask_for(in, share, at + rows * stride, channels);
-            const vm inside = vm_and(vf_gt(weight, vf_zero()), vm_and(vf_gt(r, before), vf_lt(r, after)));
+            vm inside = vm_and(vf_gt(r, before), vf_lt(r, after));
+            if (!whole)
+                inside = vm_and(inside, vf_gt(weight, vf_zero()));
             if (!vm_any(inside))
                 continue;
-            const vf a = vf_mul(vf_sub(r2, before_square), before_scale);
+            const vf r2 = vf_mul(r, r), a = vf_mul(vf_sub(r2, before_square), before_scale);
             const vf b = vf_fnma(vf_sub(r2, square), after_scale, vf_set1(1));
             const vf shown = vf_mul(vf_select(vf_lt(r, radius), a, b), scale);
-            const vf w = vf_mul(shown, share ? vf_sub(weight, vf_load(share + at)) : weight);
-            for (int c = 0; c < channels; c++)
-                sum[c] = vf_select(inside, vf_fma(w, vf_load(in[c] + at), sum[c]), sum[c]);
-            sum[4] = vf_add_where(inside, w, sum[4]);
+            const vf left = share ? vf_sub(weight, vf_load(share + at)) : weight;
+            const vf w = vf_keep(inside, whole && !share ? shown : vf_mul(shown, left));
+            for (int c = 0; c < channels; c++) {
+                const vf more = vf_fma(w, vf_load(in[c] + at), sum[c]);
+                // A sample without weight has no defined colour.
+                sum[c] = whole ? more : vf_select(inside, more, sum[c]);
+            }
+            sum[4] = vf_add(sum[4], w);
         }
         any[x / 16] |= (uint8_t)vm_any(vf_gt(sum[4], vf_zero()));
         for (int c = 0; c < 5; c++)
@@ -50,24 +56,34 @@ HF_INLINE void layers_weigh_of(const struct hf_slice *s, const float *const in[6
 }
 
 HF_INLINE void layers_weigh_rows(const struct hf_slice *s, const float *const in[6], const float *share,
-                                 ptrdiff_t stride, int rows, const int channels, int n, int add, float *const out[5],
-                                 uint8_t *any)
+                                 ptrdiff_t stride, int rows, const int channels, const int whole, int n, int add,
+                                 float *const out[5], uint8_t *any)
 {
     if (rows == 1)
-        layers_weigh_of(s, in, share, stride, 1, channels, n, add, out, any);
+        layers_weigh_of(s, in, share, stride, 1, channels, whole, n, add, out, any);
     else if (rows == 2)
-        layers_weigh_of(s, in, share, stride, 2, channels, n, add, out, any);
+        layers_weigh_of(s, in, share, stride, 2, channels, whole, n, add, out, any);
     else
-        layers_weigh_of(s, in, share, stride, rows, channels, n, add, out, any);
+        layers_weigh_of(s, in, share, stride, rows, channels, whole, n, add, out, any);
+}
+
+HF_INLINE void layers_weigh_all(const struct hf_slice *s, const float *const in[6], const float *share,
+                                ptrdiff_t stride, int rows, const int channels, int n, int add, float *const out[5],
+                                uint8_t *any)
+{
+    if (in[4])
+        layers_weigh_rows(s, in, share, stride, rows, channels, 0, n, add, out, any);
+    else
+        layers_weigh_rows(s, in, share, stride, rows, channels, 1, n, add, out, any);
 }
 
 static void layers_weigh_simd(const struct hf_slice *s, const float *const in[6], const float *share, ptrdiff_t stride,
                               int rows, int channels, int n, int add, float *const out[5], uint8_t *any)
 {
     if (channels == 0)
-        layers_weigh_rows(s, in, share, stride, rows, 0, n, add, out, any);
+        layers_weigh_all(s, in, share, stride, rows, 0, n, add, out, any);
     else
-        HF_WITH_CHANNELS(channels, layers_weigh_rows(s, in, share, stride, rows, CHANNELS, n, add, out, any));
+        HF_WITH_CHANNELS(channels, layers_weigh_all(s, in, share, stride, rows, CHANNELS, n, add, out, any));
 }
 
 // Reads and writes whole vectors only inside its arrays: n may be less than a vector.
