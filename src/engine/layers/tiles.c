@@ -183,14 +183,23 @@ int hf_layers_mark_touched(struct hf_cell *c, const struct hf_slice *s, struct h
     return any;
 }
 
+// Tiles without the bits are passed over eight at a time.
 int hf_layers_next_run(const struct hf_tile_map *m, int *tx, int ty, int end, int bits)
 {
-    while (*tx < end && !(*hf_layers_map_at(m, *tx, ty) & bits))
-        ++*tx;
-    int to = *tx;
-    while (to < end && (*hf_layers_map_at(m, to, ty) & bits))
-        to++;
-    return to;
+    const uint64_t every = (uint64_t)0x0101010101010101 * (uint64_t)(bits & 255);
+    const uint8_t *row = hf_layers_map_at(m, 0, ty);
+    int from = *tx;
+    for (uint64_t eight; from + 8 <= end; from += 8) {
+        memcpy(&eight, row + from, sizeof eight);
+        if (eight & every)
+            break;
+    }
+    while (from < end && !(row[from] & bits))
+        from++;
+    *tx = from;
+    while (from < end && (row[from] & bits))
+        from++;
+    return from;
 }
 
 void hf_layers_clip_rows(const struct hf_cell *c, int level, int ty, int *y0, int *y1)
