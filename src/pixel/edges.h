@@ -62,9 +62,9 @@ static inline float hf_edges_between(float v, float a, float b)
     return v < high ? v : high;
 }
 
-// The same past shares that are 0.
+// The first share from i on that is not 0, of n in a row; n if there is none. Blocks of zeros are passed over.
 int hf_edges_skip(const float *share, int i, int n);
-// The first share from i on that is not 0, of n in a row; n if there is none. share NULL: all are 0.
+// The same, and share may be NULL: all are 0.
 static inline int hf_edges_next(const float *share, int i, int n)
 {
     if (!share)
