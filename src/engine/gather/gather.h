@@ -134,9 +134,9 @@ static inline float hf_level_spread(const struct hf_levels *l, int i, float coc)
     return hf_level_area(l, i, own) * (1 - hf_level_area(l, i - 1, own)) * (l->level[i].area / area);
 }
 
-// What a sample counts of what near pixels hide, times what of it is not near: less than that where it is hardly open. Else one
-// that is a millionth less blurred than a wholly near one would fill all that is around it at once, as its share of a pixel in
-// hf_level_near is 8e4 at a blur of 13 pixels.
+// Among what near pixels hide a sample counts by how much of it is not near (`open`), times this: 1, but less where it is hardly
+// open. Without it a sample a millionth less blurred than a wholly near one would fill all that is around it, because its share
+// in hf_level_near is 8e4 for a pixel whose blur is 13 pixels.
 #define HF_OPEN_WHOLE 0.125f
 static inline float hf_open_part(float open)
 {

@@ -33,11 +33,12 @@ static struct hf_source_row prepare_row(struct walk *w, int x0, int x1, int y, c
     return r;
 }
 
-// Whether none of four pixels from x on, of n, draws anything. In most cells a slice or the near field has few sources.
-static int none_of_four(const struct hf_source_row *row, int x, int n)
+// List four pixels from x on, of n. Often none of them draws anything: in most cells a slice or the near field has few sources.
+static void list_four(struct walk *w, const struct hf_source_row *row, int x, int n)
 {
     const int32_t *p = row->picture + x;
-    return x + 4 <= n && (p[0] & p[1] & p[2] & p[3]) < 0;
+    if (x + 4 > n || (p[0] & p[1] & p[2] & p[3]) >= 0)
+        hf_list_sources(w, row, x, hf_min(x + 4, n));
 }
 
 // Prepare what lies behind the first samples of pixels, n of row y from x0 on, as another row of sources. Returns 0 if
@@ -90,14 +91,12 @@ static void list_full(struct walk *w, int y0, int y1)
     }
     for (int x = 0; x < n && !hf_stopped(w->f->s->stop); x += 4)
         for (int i = 0; i < y1 - y0; i++)
-            if (!none_of_four(&row[i], x, n))
-                hf_list_sources(w, &row[i], x, hf_min(x + 4, n));
+            list_four(w, &row[i], x, n);
     for (int y = y0; y < y1; y++)
         for (int i = 0; i < hf_scatter_sets(w->field); i++)
             if (prepare_backs(w, i, x0, y, n, &row[0]))
                 for (int x = 0; x < n && !hf_stopped(w->f->s->stop); x += 4)
-                    if (!none_of_four(&row[0], x, n))
-                        hf_list_sources(w, &row[0], x, hf_min(x + 4, n));
+                    list_four(w, &row[0], x, n);
     hf_flush_sources(w);
 }
 
