@@ -124,6 +124,18 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p + step, _mm256_extractf128_ps(a, 1));
 }
 
+// The first half of a vector from a, the second from b; and the two halves of v to a and b.
+static inline vf vf_load_halves(const float *a, const float *b)
+{
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b), 1);
+}
+
+static inline void vf_store_halves(float *a, float *b, vf v)
+{
+    _mm_storeu_ps(a, _mm256_castps256_ps128(v));
+    _mm_storeu_ps(b, _mm256_extractf128_ps(v, 1));
+}
+
 // 8 numbers from number n on of a followed by b; 0 <= n < 8.
 #define vf_align(a, b, n) vi_as_vf(vi_align(vf_as_vi(a), vf_as_vi(b), 4 * (n)))
 

@@ -123,6 +123,18 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p + 3 * step, _mm512_extractf32x4_ps(a, 3));
 }
 
+// The first half of a vector from a, the second from b; and the two halves of v to a and b.
+static inline vf vf_load_halves(const float *a, const float *b)
+{
+    return _mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(a)), _mm256_loadu_ps(b), 1);
+}
+
+static inline void vf_store_halves(float *a, float *b, vf v)
+{
+    _mm256_storeu_ps(a, _mm512_castps512_ps256(v));
+    _mm256_storeu_ps(b, _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(v), 1)));
+}
+
 // 16 numbers from number n on of a followed by b; 0 <= n < 16.
 #define vf_align(a, b, n) _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(b), _mm512_castps_si512(a), n))
 

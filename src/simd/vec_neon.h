@@ -157,6 +157,18 @@ static inline void vf_store_half(void *p, vf a)
     vst1_u8((uint8_t *)p, vreinterpret_u8_f16(vcvt_f16_f32(a)));
 }
 
+// The first half of a vector from a, the second from b; and the two halves of v to a and b.
+static inline vf vf_load_halves(const float *a, const float *b)
+{
+    return vcombine_f32(vld1_f32(a), vld1_f32(b));
+}
+
+static inline void vf_store_halves(float *a, float *b, vf v)
+{
+    vst1_f32(a, vget_low_f32(v));
+    vst1_f32(b, vget_high_f32(v));
+}
+
 // Shift by one lane: the last lane of prev, then all lanes of cur except the last.
 static inline vf vf_back(vf prev, vf cur) { return vextq_f32(prev, cur, 3); }
 

@@ -123,6 +123,18 @@ static inline void vf_store_lanes(float *p, int step, vf a)
     _mm_storeu_ps(p, a);
 }
 
+// The first half of a vector from a, the second from b; and the two halves of v to a and b.
+static inline vf vf_load_halves(const float *a, const float *b)
+{
+    return _mm_castsi128_ps(_mm_unpacklo_epi64(_mm_loadl_epi64((const __m128i *)a), _mm_loadl_epi64((const __m128i *)b)));
+}
+
+static inline void vf_store_halves(float *a, float *b, vf v)
+{
+    _mm_storel_pi((__m64 *)a, v);
+    _mm_storeh_pi((__m64 *)b, v);
+}
+
 // 4 numbers from number n on of a followed by b; 0 <= n < 4.
 #define vf_align(a, b, n) vi_as_vf(vi_align(vf_as_vi(a), vf_as_vi(b), 4 * (n)))
 

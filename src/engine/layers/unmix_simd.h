@@ -4,6 +4,28 @@
 #include "engine/layers/unmix.h"
 #include "simd/simd.h"
 
+// Half a vector of pixels from each of two places in a row. Mixed pixels stand in narrow lines, two or three abreast, so most
+// lanes of a whole vector would be computed in vain.
+struct layers_two {
+    int a, b;
+};
+
+HF_INLINE vf layers_load_two(const float *row, struct layers_two x)
+{
+    return vf_load_halves(row + x.a, row + x.b);
+}
+
+// As many pixels farther on.
+HF_INLINE struct layers_two layers_beside(struct layers_two x, int i)
+{
+    return (struct layers_two){x.a + i, x.b + i};
+}
+
+HF_INLINE void layers_store_two(float *row, struct layers_two x, vf v)
+{
+    vf_store_halves(row + x.a, row + x.b, v);
+}
+
 HF_INLINE void layers_keep(const struct hf_unmix_row *u, int x, const int channels)
 {
     for (int c = 0; c < channels; c++)
@@ -66,46 +88,55 @@ HF_INLINE vf layers_finish(const int channels, vf counted, vf squares, vf *mean)
 }
 
 // farthest() of unmix.c for all lanes at once: the five rows of five are gone over twice, first for the largest
-// distance. front: lanes that want the front's mean.
-static __attribute__((noinline)) void layers_farthest(const struct hf_unmix_row *u, int x, const int channels, vm front,
-                                                      const vf other[4], vf colour[5])
+// distance. lacks: lanes that want a mean. front: those that want the front's. Most of the pixels around are on the other side in
+// all these lanes; they are passed over.
+static __attribute__((noinline)) void layers_farthest(const struct hf_unmix_row *u, struct layers_two x,
+                                                      const int channels, vm lacks, vm front, const vf other[4],
+                                                      vf colour[5])
 {
-    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x), one = vf_set1(1);
-    const vf plain = vf_mul(layers_light_of(u, 3, x), vf_set1(HF_UNMIX_PLAIN));
+    const vf middle = layers_load_two(u->middle, x), slope = layers_load_two(u->slope, x), one = vf_set1(1);
+    const vf plain = vf_mul(layers_load_two(u->light[3], x), vf_set1(HF_UNMIX_PLAIN));
     vf share[25], distance[25], most = vf_zero(), sum = vf_zero();
+    int place[25], count = 0;
     for (int k = 0; k < 25; k++) {
-        const int y = 1 + k / 5, at = x - 2 + k % 5;
-        const vf s = vf_add(vf_mul(vf_sub(middle, vf_load(u->radius[y] + at)), slope), vf_set1(0.5f));
+        const int y = 1 + k / 5;
+        const struct layers_two at = layers_beside(x, k % 5 - 2);
+        const vf s = vf_add(vf_mul(vf_sub(middle, layers_load_two(u->radius[y], at)), slope), vf_set1(0.5f));
         const vf of_front = vf_saturate(s);
-        vf d = vf_zero();
-        const vf dimmed = vf_mul(of_front, layers_dimmed(vf_load(u->light[y] + at), plain));
-        share[k] = vf_select(front, dimmed, vf_sub(one, of_front));
+        vf d = vf_zero(), of = vf_keep(lacks, vf_select(front, of_front, vf_sub(one, of_front)));
+        if (!vm_any(vf_gt(of, vf_zero())))
+            continue;
+        const vf counts = layers_dimmed(layers_load_two(u->light[y], at), plain);
+        of = vf_select(front, vf_mul(of, counts), of);
         for (int c = 0; c < channels; c++) {
-            const vf apart = vf_abs(vf_sub(vf_load(u->colour[y][c] + at), other[c]));
+            const vf apart = vf_abs(vf_sub(layers_load_two(u->colour[y][c], at), other[c]));
             d = vf_add(d, vf_mul(apart, vf_set1(0.125f)));
         }
-        distance[k] = vf_mul(share[k], d);
-        most = vf_max(distance[k], most);
+        share[count] = of;
+        distance[count] = vf_mul(of, d);
+        most = vf_max(distance[count], most);
+        place[count++] = k;
     }
     for (int c = 0; c < 5; c++)
         colour[c] = vf_zero();
-    for (int k = 0; k < 25; k++) {
-        const int y = 1 + k / 5, at = x - 2 + k % 5;
-        const vf far = vf_select(vf_gt(most, vf_zero()), vf_div(distance[k], most), one), square = vf_mul(far, far);
+    for (int i = 0; i < count; i++) {
+        const int y = 1 + place[i] / 5;
+        const struct layers_two at = layers_beside(x, place[i] % 5 - 2);
+        const vf far = vf_select(vf_gt(most, vf_zero()), vf_div(distance[i], most), one), square = vf_mul(far, far);
         const vf fourth = vf_mul(square, square);
-        const vf w = vf_mul(vf_mul(share[k], vf_mul(fourth, fourth)), vf_set1(0.03125f));
+        const vf w = vf_mul(vf_mul(share[i], vf_mul(fourth, fourth)), vf_set1(0.03125f));
         sum = vf_add(sum, w);
-        colour[4] = vf_add(colour[4], vf_mul(w, vf_load(u->radius[y] + at)));
+        colour[4] = vf_add(colour[4], vf_mul(w, layers_load_two(u->radius[y], at)));
         for (int c = 0; c < channels; c++)
-            colour[c] = vf_add(colour[c], vf_mul(w, vf_load(u->colour[y][c] + at)));
+            colour[c] = vf_add(colour[c], vf_mul(w, layers_load_two(u->colour[y][c], at)));
     }
     for (int c = 0; c < 5; c++)
         colour[c] = vf_keep(vf_gt(sum, vf_zero()), vf_div(colour[c], sum));
 }
 
 // hf_unmix_complete for all lanes at once. lacks: lanes where a side has less weight than `little`.
-HF_INLINE void layers_complete(const struct hf_unmix_row *u, int x, const int channels, vm lacks, const vf weight[2],
-                               vf little, vf mean[2][5], vf spread[2])
+HF_INLINE void layers_complete(const struct hf_unmix_row *u, struct layers_two x, const int channels, vm lacks,
+                               const vf weight[2], vf little, vf mean[2][5], vf spread[2])
 {
     const vm front = vf_lt(weight[0], weight[1]);
     const vf known = vf_div(vf_select(front, weight[0], weight[1]), little);
@@ -113,7 +144,7 @@ HF_INLINE void layers_complete(const struct hf_unmix_row *u, int x, const int ch
     vf other[4], colour[5];
     for (int c = 0; c < channels; c++)
         other[c] = vf_select(front, mean[1][c], mean[0][c]);
-    layers_farthest(u, x, channels, front, other, colour);
+    layers_farthest(u, x, channels, lacks, front, other, colour);
     for (int i = 0; i < 2; i++) {
         spread[i] = vf_select(of[i], vf_mul(spread[i], known), spread[i]);
         for (int c = 0; c < 5; c++) {
@@ -126,11 +157,11 @@ HF_INLINE void layers_complete(const struct hf_unmix_row *u, int x, const int ch
 }
 
 // Means and variances of the two sides. mixed: what a mixed pixel counts where a sure one counts 1.
-HF_INLINE void layers_sides(const struct hf_unmix_row *u, int x, const int channels, vf mixed, vf weight[2],
-                            vf mean[2][5], vf spread[2])
+HF_INLINE void layers_sides(const struct hf_unmix_row *u, struct layers_two x, const int channels, vf mixed,
+                            vf weight[2], vf mean[2][5], vf spread[2])
 {
-    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x);
-    const vf plain = vf_mul(layers_light_of(u, 3, x), vf_set1(HF_UNMIX_PLAIN));
+    const vf middle = layers_load_two(u->middle, x), slope = layers_load_two(u->slope, x);
+    const vf plain = vf_mul(layers_load_two(u->light[3], x), vf_set1(HF_UNMIX_PLAIN));
     vf counted[2] = {vf_zero(), vf_zero()};
     for (int i = 0; i < 2; i++) {
         weight[i] = spread[i] = vf_zero();
@@ -139,21 +170,22 @@ HF_INLINE void layers_sides(const struct hf_unmix_row *u, int x, const int chann
     }
     for (int y = 0; y < 7; y++)
         for (int i = 0; i < 7; i++) {
-            const int at = x + i - 3;
+            const struct layers_two at = layers_beside(x, i - 3);
             if (y == 3 && i == 3)
                 continue;
-            const vf sure = vf_load(u->sure[y] + at);
+            const vf sure = layers_load_two(u->sure[y], at);
             const vf w = vf_mul(vf_fma(sure, sure, mixed), vf_set1(hf_unmix_weights[y][i]));
-            const vf r = vf_load(u->radius[y] + at), f = vf_mul(w, layers_front(middle, slope, r)), b = vf_sub(w, f);
+            const vf r = layers_load_two(u->radius[y], at), f = vf_mul(w, layers_front(middle, slope, r)),
+                     b = vf_sub(w, f);
             weight[0] = vf_add(weight[0], f);
             weight[1] = vf_add(weight[1], b);
-            const vf counts = layers_dimmed(vf_load(u->light[y] + at), plain);
+            const vf counts = layers_dimmed(layers_load_two(u->light[y], at), plain);
             const vf front = vf_mul(f, counts), back = vf_mul(b, counts);
             counted[0] = vf_add(counted[0], front);
             counted[1] = vf_add(counted[1], back);
-            const vf square = vf_load(u->square[y] + at);
+            const vf square = layers_load_two(u->square[y], at);
             for (int c = 0; c < channels; c++) {
-                const vf v = vf_load(u->colour[y][c] + at);
+                const vf v = layers_load_two(u->colour[y][c], at);
                 mean[0][c] = vf_fma(front, v, mean[0][c]);
                 mean[1][c] = vf_fma(back, v, mean[1][c]);
             }
@@ -167,28 +199,30 @@ HF_INLINE void layers_sides(const struct hf_unmix_row *u, int x, const int chann
 }
 
 // Out of line: most rows have no thicket.
-static __attribute__((noinline)) void layers_sides_in_thicket(const struct hf_unmix_row *u, int x, const int channels,
-                                                              vf thick, vf weight[2], vf mean[2][5], vf spread[2])
+static __attribute__((noinline)) void layers_sides_in_thicket(const struct hf_unmix_row *u, struct layers_two x,
+                                                              const int channels, vf thick, vf weight[2], vf mean[2][5],
+                                                              vf spread[2])
 {
     layers_sides(u, x, channels, vf_mul(thick, vf_set1(HF_UNMIX_UNSURE)), weight, mean, spread);
 }
 
 // The channels of pixel `at` of row y, and its radius behind them.
-HF_INLINE vf layers_value(const struct hf_unmix_row *u, int y, int at, int c)
+HF_INLINE vf layers_value(const struct hf_unmix_row *u, int y, struct layers_two at, int c)
 {
-    return vf_load((c < 4 ? u->colour[y][c] : u->radius[y]) + at);
+    return layers_load_two(c < 4 ? u->colour[y][c] : u->radius[y], at);
 }
 
 // lamp_in_thicket() of unmix.c for all lanes at once.
-static __attribute__((noinline)) void layers_lamp_in_thicket(const struct hf_unmix_row *u, int x, const int channels,
-                                                             vf thick, vf mean[2][5], vf spread[2])
+static __attribute__((noinline)) void layers_lamp_in_thicket(const struct hf_unmix_row *u, struct layers_two x,
+                                                             const int channels, vf thick, vf mean[2][5], vf spread[2])
 {
-    const vf middle = vf_load(u->middle + x), slope = vf_load(u->slope + x), zero = vf_zero(), one = vf_set1(1);
-    const vf own = layers_light_of(u, 3, x), plain = vf_mul(own, vf_set1(HF_UNMIX_DARK));
+    const vf middle = layers_load_two(u->middle, x), slope = layers_load_two(u->slope, x), zero = vf_zero(),
+             one = vf_set1(1);
+    const vf own = layers_load_two(u->light[3], x), plain = vf_mul(own, vf_set1(HF_UNMIX_DARK));
     vf most = zero, least = own, dark[2] = {zero, zero}, light[2] = {zero, zero}, bright[2] = {zero, zero};
     vf lamp[2][5];
     for (int i = 0; i < 49; i++) {
-        const vf v = vf_load(u->light[i / 7] + x + i % 7 - 3);
+        const vf v = layers_load_two(u->light[i / 7], layers_beside(x, i % 7 - 3));
         most = vf_max(v, most);
         least = vf_min(v, least);
     }
@@ -199,10 +233,11 @@ static __attribute__((noinline)) void layers_lamp_in_thicket(const struct hf_unm
         for (int c = 0; c < 5; c++)
             lamp[side][c] = zero;
     for (int i = 0; i < 49; i++) {
-        const int y = i / 7, at = x + i % 7 - 3;
-        const vf v = vf_load(u->light[y] + at), far = vf_div(v, most), square = vf_mul(far, far);
+        const int y = i / 7;
+        const struct layers_two at = layers_beside(x, i % 7 - 3);
+        const vf v = layers_load_two(u->light[y], at), far = vf_div(v, most), square = vf_mul(far, far);
         const vf fourth = vf_mul(square, square);
-        const vf front = layers_front(middle, slope, vf_load(u->radius[y] + at)), back = vf_sub(one, front);
+        const vf front = layers_front(middle, slope, layers_load_two(u->radius[y], at)), back = vf_sub(one, front);
         const vf few = vf_mul(vf_set1(0.015625f * hf_unmix_weights[y][i % 7]), layers_dimmed(v, plain));
         const vf brightest = vf_mul(vf_set1(0.015625f), vf_mul(fourth, fourth));
         const vf w[2] = {vf_mul(few, front), vf_mul(brightest, back)}, few_back = vf_mul(few, back);
@@ -234,8 +269,8 @@ static __attribute__((noinline)) void layers_lamp_in_thicket(const struct hf_unm
 }
 
 // What both sides of each pixel are, and how much of that is known. Returns the lanes that have both sides.
-HF_INLINE vm layers_both_sides(const struct hf_unmix_row *u, int x, const int channels, vm mixed, vf a0, vf mean[2][5],
-                               vf spread[2], vf *known)
+HF_INLINE vm layers_both_sides(const struct hf_unmix_row *u, struct layers_two x, const int channels, vm mixed, vf a0,
+                               vf mean[2][5], vf spread[2], vf *known)
 {
     const vf zero = vf_zero(), one = vf_set1(1), told = vf_sub(vf_add(a0, a0), one);
     vf weight[2];
@@ -256,18 +291,18 @@ HF_INLINE vm layers_both_sides(const struct hf_unmix_row *u, int x, const int ch
     return mixed;
 }
 
-HF_INLINE vf layers_rest(const struct hf_unmix_row *u, int x, int c, vf a, vf mean[2][5])
+HF_INLINE vf layers_rest(const struct hf_unmix_row *u, struct layers_two x, int c, vf a, vf mean[2][5])
 {
-    return vf_fnma(vf_sub(vf_set1(1), a), mean[1][c], vf_fnma(a, mean[0][c], vf_load(u->colour[3][c] + x)));
+    return vf_fnma(vf_sub(vf_set1(1), a), mean[1][c], vf_fnma(a, mean[0][c], layers_load_two(u->colour[3][c], x)));
 }
 
-HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channels, vf a0, vf mean[2][5],
+HF_INLINE vf layers_share(const struct hf_unmix_row *u, struct layers_two x, const int channels, vf a0, vf mean[2][5],
                           const vf spread[2], vf *behind)
 {
     vf along = vf_zero(), apart = vf_zero(), size = vf_zero(), off = vf_zero();
     for (int c = 0; c < channels; c++) {
         const vf f = mean[0][c], b = mean[1][c], d = vf_sub(f, b);
-        along = vf_fma(vf_sub(vf_load(u->colour[3][c] + x), b), d, along);
+        along = vf_fma(vf_sub(layers_load_two(u->colour[3][c], x), b), d, along);
         apart = vf_fma(d, d, apart);
         size = vf_add(size, vf_fma(f, f, vf_mul(b, b)));
     }
@@ -290,13 +325,13 @@ HF_INLINE vf layers_share(const struct hf_unmix_row *u, int x, const int channel
 }
 
 // How far each pixel shows a lamp behind the edge, lane by lane: lamps are few.
-HF_INLINE vf layers_lit(const struct hf_unmix_row *u, int x, vm mixed, vf mean[2][5])
+HF_INLINE vf layers_lit(const struct hf_unmix_row *u, struct layers_two x, vm mixed, vf mean[2][5])
 {
     vf light[2];
     for (int i = 0; i < 2; i++)
         light[i] = layers_eighth_light(mean[i][0], mean[i][1], mean[i][2]);
     const vf most = vf_max(light[0], light[1]), wider = vf_sub(vf_abs(mean[1][4]), vf_abs(mean[0][4]));
-    const vm bright = vm_and(vf_gt(layers_light_of(u, 3, x), vf_mul(most, vf_set1(HF_UNMIX_LAMP))),
+    const vm bright = vm_and(vf_gt(layers_load_two(u->light[3], x), vf_mul(most, vf_set1(HF_UNMIX_LAMP))),
                              vm_and(mixed, vf_gt(wider, vf_zero())));
     if (!vm_any(bright))
         return vf_zero();
@@ -305,19 +340,21 @@ HF_INLINE vf layers_lit(const struct hf_unmix_row *u, int x, vm mixed, vf mean[2
     vf_store(limit, most);
     vf_store(alpha, vf_max(mean[0][3], mean[1][3]));
     for (int lane = 0; lane < VF_N; lane++)
-        if (lamp[lane] > 0)
-            lamp[lane] = lamp[lane] * hf_unmix_lamp(u, x + lane, limit[lane], alpha[lane]);
+        if (lamp[lane] > 0) {
+            const int at = lane < VF_N / 2 ? x.a + lane : x.b + lane - VF_N / 2;
+            lamp[lane] = lamp[lane] * hf_unmix_lamp(u, at, limit[lane], alpha[lane]);
+        }
     return vf_load(lamp);
 }
 
-HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const int channels, vm mixed)
+HF_INLINE void layers_unmix_two(const struct hf_unmix_row *u, struct layers_two x, const int channels)
 {
+    vm mixed = vf_lt(layers_load_two(u->sure[3], x), vf_set1(1));
     vf mean[2][5], spread[2], known;
-    layers_prepare(u, x, channels);
-    const vf own = vf_load(u->radius[3] + x), one = vf_set1(1), zero = vf_zero();
-    const vf a0 = layers_front(vf_load(u->middle + x), vf_load(u->slope + x), own);
+    const vf own = layers_load_two(u->radius[3], x), one = vf_set1(1), zero = vf_zero();
+    const vf a0 = layers_front(layers_load_two(u->middle, x), layers_load_two(u->slope, x), own);
     mixed = layers_both_sides(u, x, channels, mixed, a0, mean, spread, &known);
-    const vf by = vf_mul(vf_sub(one, vf_load(u->sure[3] + x)), known), lamp = layers_lit(u, x, mixed, mean);
+    const vf by = vf_mul(vf_sub(one, layers_load_two(u->sure[3], x)), known), lamp = layers_lit(u, x, mixed, mean);
     vf behind, a = layers_share(u, x, channels, a0, mean, spread, &behind);
     a = vf_fma(lamp, vf_sub(vf_min(a, vf_set1(HF_UNMIX_RIM)), a), a);
     const vf seen = vf_fma(by, vf_sub(a, one), one);
@@ -326,31 +363,59 @@ HF_INLINE void layers_unmix_vector(const struct hf_unmix_row *u, int x, const in
     const vf scale = vf_select(vf_lt(a, one), vf_add(one, more_back), one);  // at most 2
     for (int c = 0; c < channels; c++) {
         const vf rest = layers_rest(u, x, c, a, mean);
-        const vf v = vf_load(u->colour[3][c] + x);
+        const vf v = layers_load_two(u->colour[3][c], x);
         const vf more = c < 3 ? vf_max(rest, zero) : zero;
         const vf front = vf_between(vf_add(vf_fnma(lamp, more, rest), mean[0][c]), mean[0][c], v);
         const vf back = vf_between(vf_fma(rest, scale, mean[1][c]), mean[1][c], v);
-        vf_store(u->seen[c] + x, vf_select(mixed, vf_fma(whole, vf_sub(v, front), front), v));
-        vf_store(u->mixed[c] + x, vf_keep(mixed, back));
+        layers_store_two(u->seen[c], x, vf_select(mixed, vf_fma(whole, vf_sub(v, front), front), v));
+        layers_store_two(u->mixed[c], x, vf_keep(mixed, back));
     }
     const vf front = vf_fma(vf_sub(one, a0), vf_sub(mean[0][4], own), own);
-    vf_store(u->seen[4] + x, vf_select(mixed, seen, one));
-    vf_store(u->mixed[4] + x, vf_keep(mixed, vf_sub(one, seen)));
-    vf_store(u->seen[5] + x, vf_select(mixed, vf_fma(whole, vf_sub(own, front), front), own));
-    vf_store(u->mixed[5] + x, vf_select(mixed, vf_fma(a0, vf_sub(mean[1][4], own), own), own));
+    layers_store_two(u->seen[4], x, vf_select(mixed, seen, one));
+    layers_store_two(u->mixed[4], x, vf_keep(mixed, vf_sub(one, seen)));
+    layers_store_two(u->seen[5], x, vf_select(mixed, vf_fma(whole, vf_sub(own, front), front), own));
+    layers_store_two(u->mixed[5], x, vf_select(mixed, vf_fma(a0, vf_sub(mean[1][4], own), own), own));
+}
+
+// Un-mixes half a vector from x on together with the one that waits, or lets it wait for another. Returns the one that waits,
+// or -1.
+HF_INLINE int layers_unmix_half(const struct hf_unmix_row *u, int waits, int x, const int channels)
+{
+    if (waits < 0)
+        return x;
+    layers_unmix_two(u, (struct layers_two){waits, x}, channels);
+    return -1;
+}
+
+// Where the first half of a vector's mixed pixels begins; it must not reach beyond the vector.
+HF_INLINE int layers_first_half(const float *sure)
+{
+    int i = 0;
+    while (i < VF_N / 2 && !(sure[i] < 1))
+        i++;
+    return i;
 }
 
 HF_INLINE void layers_unmix_of(const struct hf_unmix_row *u, int n, const int channels)
 {
+    int waits = -1;
     for (int x = 0; x < n; x += VF_N) {
         const vm mixed = vf_lt(vf_load(u->sure[3] + x), vf_set1(1));
-        if (vm_any(mixed)) {
-            u->any[x / 16] = 1;
-            layers_unmix_vector(u, x, channels, mixed);
-        } else {
-            layers_keep(u, x, channels);
-        }
+        layers_keep(u, x, channels);
+        if (!vm_any(mixed))
+            continue;
+        u->any[x / 16] = 1;
+        layers_prepare(u, x, channels);
+        const int first = layers_first_half(u->sure[3] + x);
+        int more = 0;
+        for (int i = first + VF_N / 2; i < VF_N; i++)
+            more |= u->sure[3][x + i] < 1;
+        waits = layers_unmix_half(u, waits, x + first, channels);
+        if (more)
+            waits = layers_unmix_half(u, waits, x + VF_N / 2, channels);
     }
+    if (waits >= 0)
+        layers_unmix_two(u, (struct layers_two){waits, waits}, channels);
 }
 
 static void layers_unmix_simd(const struct hf_unmix_row *u, int n)
