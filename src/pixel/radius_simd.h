@@ -28,8 +28,9 @@ struct radius_sums {
     uint64_t near_groups, far_groups;
 };
 
-HF_INLINE void radius_form(const struct hf_frame *f, const enum hf_depth_form form, int x, int y, int n, float *out,
-                           struct radius_sums *sums)
+// counted: what the radii are is counted too. Otherwise only NaN is noted.
+HF_INLINE void radius_form(const struct hf_frame *f, const enum hf_depth_form form, const int counted, int x, int y,
+                           int n, float *out, struct radius_sums *sums)
 {
     const struct hf_setup *s = f->s;
     const uint8_t *row = hf_depth_row(f, x, y, n, 0);
@@ -42,6 +43,8 @@ HF_INLINE void radius_form(const struct hf_frame *f, const enum hf_depth_form fo
         const vf r = radius_of_vf(s, coc_variable(s, form, d, px, py, &none));
         vf_store(out + i, r);
         sums->nan = vm_or(sums->nan, vf_ne(d, d));
+        if (!counted)
+            continue;
         sums->none = vi_count(sums->none, none);
         const vm is_near = vf_lt(r, vf_zero()), is_far = vf_gt(r, vf_zero());
         sums->near = vi_count(sums->near, is_near);
@@ -65,7 +68,10 @@ static void radius_row_simd(const struct hf_frame *f, int x, int y, int n, float
     const vm no = vf_gt(vf_zero(), vf_zero());
     struct radius_sums sums = {vi_set1(0), vi_set1(0), vi_set1(0), vf_set1(HUGE_VALF), vf_set1(-HUGE_VALF), no, no,
                                no,         0,          0};
-    HF_WITH_FORM(f->s->form, radius_form(f, (enum hf_depth_form)FORM, x, y, whole, out, &sums))
+    if (counts)
+        HF_WITH_FORM(f->s->form, radius_form(f, (enum hf_depth_form)FORM, 1, x, y, whole, out, &sums))
+    else
+        HF_WITH_FORM(f->s->form, radius_form(f, (enum hf_depth_form)FORM, 0, x, y, whole, out, &sums))
     // A NaN needs its neighbours, so the plain C does the row again; elsewhere its bits are the same.
     const int from = vm_any(sums.nan) ? 0 : whole;
     if (from < n)
