@@ -350,11 +350,14 @@ HF_INLINE vf layers_roots_of(const float *const in[6], int x)
 }
 
 // Splits samples' weight in the mean around radius r: *of is the part that is as far as r; returns the rest. company
-// adds up both parts, and the rest times the absolute radii.
+// adds up both parts, and the rest times the absolute radii. Most samples have no weight.
 HF_INLINE vf layers_in_line(const float *weight, const float *radius, vf r, int i, vf *of, vf company[3])
 {
     const vf w = vf_load(weight);
     const vm some = vf_gt(w, vf_zero());
+    *of = vf_zero();
+    if (!vm_any(some))
+        return vf_zero();
     const vf far = vf_keep(some, vf_load(radius)), whole = vf_saturate(vf_mul(vf_set1(HF_LAYERS_WHOLE), w));
     const vf line = vf_keep(some, vf_mul(vf_set1(hf_layers_line(i)), whole));
     const vf alike = vf_fnma(vf_abs(vf_sub(far, r)), vf_set1(1.0f / HF_LAYERS_ALIKE), vf_set1(1));
@@ -376,8 +379,9 @@ HF_INLINE vf layers_shade(const float *const in[6], const float *const middle[6]
     return vf_select(vf_gt(v, least), v, least);
 }
 
-HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const along[2], const int channels, int n,
-                                float *const out[6])
+// second: the second of two directions, that is, along is not NULL. In the first no sample is alone.
+HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const along[2], const int second,
+                                const int channels, int n, float *const out[6])
 {
     const vf zero = vf_zero();
     for (int x = 0; x < n; x += VF_N) {
@@ -395,7 +399,7 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const
             colour[c] = zero;
         for (int i = 0; i < HF_LAYERS_TAPS; i++)
             rest[i] = layers_in_line(in[i][4] + x, in[i][5] + x, r, i, &of[i], line);
-        if (along) {
+        if (second) {
             alone = layers_lonely(r, line[0], line[1], line[2]);
             if (vm_any(vf_gt(alone, zero))) {
                 for (int i = 0; i < HF_LAYERS_TAPS; i++) {
@@ -406,11 +410,15 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const
                 alone = vf_min(alone, layers_lonely(r, across[0], across[1], across[2]));
             }
         }
+        const int lonely = second && vm_any(vf_gt(alone, zero));
         const vf middle = layers_roots_of(in[HF_LAYERS_SMOOTH], x), plain = vf_mul(middle, vf_set1(HF_LAYERS_GLARE));
         const vf apart = vf_div(vf_set1(HF_LAYERS_SHADES), vf_max(middle, vf_set1(HF_LAYERS_SOME)));
         for (int i = 0; i < HF_LAYERS_TAPS; i++) {
+            // Most samples count nothing where no sample is alone.
+            if (!lonely && !vm_any(vf_gt(of[i], zero)))
+                continue;
             const vf shade = layers_shade(in[i], in[HF_LAYERS_SMOOTH], x, apart), near = vf_mul(of[i], shade);
-            const vf all = vf_fma(alone, vf_sub(rest[i], near), near);
+            const vf all = lonely ? vf_fma(alone, vf_sub(rest[i], near), near) : near;
             const vm some = vf_gt(all, zero);
             if (!vm_any(some))
                 continue;
@@ -425,7 +433,7 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const
         vf_store(out[5] + x, vf_keep(there, vf_mul(radius, inverse)));
         for (int c = 0; c < channels; c++) {
             const vf v = vf_keep(there, vf_mul(colour[c], inverse));
-            vf_store(out[c] + x, along ? vf_mul(v, vf_abs(v)) : v);
+            vf_store(out[c] + x, second ? vf_mul(v, vf_abs(v)) : v);
         }
     }
 }
@@ -433,7 +441,10 @@ HF_INLINE void layers_smooth_of(const float *const in[13][6], const float *const
 static void layers_smooth_simd(const float *const in[13][6], const float *const along[2], int channels, int n,
                                float *const out[6])
 {
-    HF_WITH_CHANNELS(channels, layers_smooth_of(in, along, CHANNELS, n, out));
+    if (along)
+        HF_WITH_CHANNELS(channels, layers_smooth_of(in, along, 1, CHANNELS, n, out));
+    else
+        HF_WITH_CHANNELS(channels, layers_smooth_of(in, NULL, 0, CHANNELS, n, out));
 }
 
 // A mask of a vector's first n lanes.
