@@ -68,6 +68,21 @@ HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form for
     return s->lens ? vf_div(minus_one, z) : z;
 }
 
+// The variable of surfaces' view depths.
+HF_INLINE vf coc_of_z(const struct hf_setup *s, vf z)
+{
+    return s->lens ? vf_div(vf_set1(-1), z) : z;
+}
+
+// Is any of these view depths, whose bits these are, none of a surface? The bits of surfaces lie between those of 0 and of 1e10,
+// and bits less 1 as unsigned numbers are larger for all else.
+HF_INLINE int coc_misses_some(vi a, vi b, vi c, vi d)
+{
+    const vi one = vi_set1(1), last = vi_set1(0x501502f9 - 2);
+    const vi most = vi_max(vi_max(vi_sub(a, one), vi_sub(b, one)), vi_max(vi_sub(c, one), vi_sub(d, one)));
+    return vi_any(vi_xor(vi_max(most, last), last));
+}
+
 // The CoC from 0 to 1, linear or smoothstep.
 HF_INLINE vf coc_ramp(const struct hf_setup *s, vf t)
 {
@@ -83,6 +98,23 @@ HF_INLINE vf coc_near(const struct hf_setup *s, vf v)
 HF_INLINE vf coc_far(const struct hf_setup *s, vf v)
 {
     return coc_round(s->storage, coc_ramp(s, vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i))));
+}
+
+// What most frames have becomes a constant: linear CoC of view depth, which buffers hold as it is; of the range model and of a
+// lens.
+enum coc_how { COC_ANY, COC_RANGE, COC_LENS };
+
+HF_INLINE enum coc_how coc_how(const struct hf_setup *s)
+{
+    if (s->form != HF_FORM_Z || s->smoothstep || s->storage != HF_STORAGE_FLOAT)
+        return COC_ANY;
+    return s->lens ? COC_LENS : COC_RANGE;
+}
+
+// Far CoC of the range model from view depths, if coc_how says so.
+HF_INLINE vf coc_far_plain(const struct hf_setup *s, vf z)
+{
+    return vf_saturate(vf_mul(vf_sub(z, vf_set1(s->far_0)), vf_set1(s->far_i)));
 }
 
 #endif
