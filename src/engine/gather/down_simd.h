@@ -129,19 +129,55 @@ HF_INLINE void down_row_lines(const struct hf_frame *f, const int channels, cons
         hf_store_rgb(f, d.part[1], n);
 }
 
+// CoC and colour of a vector of quads that has nothing of a field, or that belongs to it wholly.
+HF_INLINE void down_put_same(const struct down_row *d, const int field, int x, vf coc, const vf colour[3],
+                             const int stream)
+{
+    vf_put(d->coc4[field] + x, coc, stream);
+    if (field == 0)
+        vf_put(d->coc4[HF_AREA_NEAR_MOST] + x, coc, stream);
+    else if (d->of_light)
+        vf_put(d->coc4[HF_AREA_FAR_OF_LIGHT] + x, coc, stream);
+    for (int c = 0; c < 3; c++)
+        vf_put(d->part[field][c] + x, colour[c], stream);
+}
+
+// Most vectors of quads have nothing of one of the two fields, and many belong to the other wholly, whose mean is then that of the
+// colour.
+HF_INLINE int down_is_same(const struct down_row *d, const int unit, const int field, int x, const vf mean[3],
+                           const int stream)
+{
+    const vf one = vf_set1(1), none[3] = {vf_zero(), vf_zero(), vf_zero()};
+    vi bits[4];
+    for (int i = 0; i < 4; i++)
+        bits[i] = vf_as_vi(vf_load(d->coc[field][i] + x));
+    if (!vi_any(vi_or(vi_or(bits[0], bits[1]), vi_or(bits[2], bits[3])))) {
+        down_put_same(d, field, x, vf_zero(), none, stream);
+        return 1;
+    }
+    // No number below 1 has all bits of 1.
+    const vi shared = vi_and(vi_and(bits[0], bits[1]), vi_and(bits[2], bits[3]));
+    if (!unit || vi_any(vi_xor(shared, vf_as_vi(one))))
+        return 0;
+    down_put_same(d, field, x, one, mean, stream);
+    return 1;
+}
+
 // A vector of quads of R11G11B10F, in registers. Returns the largest mean.
-HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, const int near, const int far,
+HF_INLINE vf down_block_r11(const enum hf_storage storage, const struct down_row *d, const int near, const int far,
                             const int unit, int x, const vi u[4], const int stream)
 {
-    vf quad[3][4], mean[3];
+    vf quad[3][4], mean[3], stored[3];
     down_unpack(u, quad);
     for (int c = 0; c < 3; c++) {
         mean[c] = vf_mul(down_sum(quad[c]), vf_set1(0x1p110f));
+        stored[c] = round_stored(storage, mean[c], c);
         if (near)
-            vf_put(d->colour[c] + x, round_stored(storage, mean[c], c), stream);
+            vf_put(d->colour[c] + x, stored[c], stream);
     }
+    HF_UNROLL(2)
     for (int field = 0; field < 2; field++) {
-        if (!(field ? far : near))
+        if (!(field ? far : near) || down_is_same(d, unit, field, x, stored, stream))
             continue;
         struct quad q = down_quad_at(d, unit, field, x);
         down_put_coc(storage, d, &q, field, x, stream);
@@ -160,8 +196,8 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
 }
 
 // A row of R11G11B10F. Returns 0 if there may be a sample that is not finite: then nothing of this row counts.
-HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int far, const int unit, int x0, int x1,
-                           int y, int stream)
+HF_INLINE int down_row_r11(const struct hf_frame *f, const enum hf_storage storage, const int near, const int far,
+                           const int unit, int x0, int x1, int y, int stream)
 {
     const struct hf_image *m = f->src;
     const uint8_t *p[2];
@@ -171,16 +207,19 @@ HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int f
     for (int x = 0; x < x1 - x0; x += VF_N) {
         vi u[4];
         down_load(m, p, x, u);
-        const vf mean = stream ? down_block_r11(f->s->storage, &d, near, far, unit, x, u, 1)
-                               : down_block_r11(f->s->storage, &d, near, far, unit, x, u, 0);
+        const vf mean = stream ? down_block_r11(storage, &d, near, far, unit, x, u, 1)
+                               : down_block_r11(storage, &d, near, far, unit, x, u, 0);
         largest = vf_max(largest, mean);
     }
     return down_is_finite(largest);
 }
 
-static int down_is_unit(const struct hf_levels *l)
+// The usual case: parts are CoCs, and floats.
+static int down_is_unit(const struct hf_frame *f)
 {
-    return l->gain == 1 && l->curve.linear == 1;
+    const struct hf_levels *near = hf_gather_levels(f->s, HF_NEAR), *far = hf_gather_levels(f->s, HF_FAR);
+    return f->s->storage == HF_STORAGE_FLOAT && near->gain == 1 && near->curve.linear == 1 && far->gain == 1 &&
+           far->curve.linear == 1;
 }
 
 HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far, struct hf_rect r)
@@ -190,10 +229,8 @@ HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far
         int x = r.x0;
         if (f->src->format == HF_FORMAT_R11G11B10F && !f->s->highlight.on) {
             const int x1 = down_words_end(f, r);
-            const int unit =
-                down_is_unit(hf_gather_levels(f->s, HF_NEAR)) && down_is_unit(hf_gather_levels(f->s, HF_FAR));
-            if (x < x1 && (unit ? down_row_r11(f, near, far, 1, x, x1, y, stream)
-                                : down_row_r11(f, near, far, 0, x, x1, y, stream)))
+            if (x < x1 && (down_is_unit(f) ? down_row_r11(f, HF_STORAGE_FLOAT, near, far, 1, x, x1, y, stream)
+                                           : down_row_r11(f, f->s->storage, near, far, 0, x, x1, y, stream)))
                 x = x1;
         }
         if (x < r.x1 && f->s->channels == 3)
