@@ -130,7 +130,8 @@ HF_INLINE vf down_block_r11(enum hf_storage storage, const struct down_row *d, c
 
 // A row of R11G11B10F. Returns 0 if there may be a sample that is not finite: then nothing of this row counts. The
 // frame's border is read at once, to be repeated outwards: it is not streamed.
-HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int far, int x0, int x1, int y, int stream)
+HF_INLINE int down_row_r11(const struct hf_frame *f, const enum hf_storage storage, const int near, const int far,
+                           int x0, int x1, int y, int stream)
 {
     const int last = f->s->half_width - VF_N, inner_row = stream && y > 0 && y < f->s->half_height - 1;
     const struct hf_image *m = f->src;
@@ -142,8 +143,8 @@ HF_INLINE int down_row_r11(const struct hf_frame *f, const int near, const int f
         vi u[4];
         down_load(m, p, x, u);
         const int inner = inner_row && x0 + x > 0 && x0 + x < last;
-        const vf mean = inner ? down_block_r11(f->s->storage, &d, near, far, x, u, 1)
-                              : down_block_r11(f->s->storage, &d, near, far, x, u, 0);
+        const vf mean =
+            inner ? down_block_r11(storage, &d, near, far, x, u, 1) : down_block_r11(storage, &d, near, far, x, u, 0);
         largest = vf_max(largest, mean);
     }
     return down_is_finite(largest);
@@ -160,7 +161,9 @@ HF_INLINE void down_rows(const struct hf_frame *f, const int near, const int far
         int x = r.x0;
         if (words) {
             const int x1 = down_words_end(f, r);
-            if (x < x1 && down_row_r11(f, near, far, x, x1, y, stream))
+            if (x < x1 &&
+                (f->s->storage == HF_STORAGE_FLOAT ? down_row_r11(f, HF_STORAGE_FLOAT, near, far, x, x1, y, stream)
+                                                   : down_row_r11(f, f->s->storage, near, far, x, x1, y, stream)))
                 x = x1;
         }
         if (x >= r.x1)

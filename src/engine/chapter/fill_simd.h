@@ -105,20 +105,47 @@ HF_INLINE vf fill_counts(const struct hf_setup *s, vf own, vf g)
     return vf_mul(vf_min(begins, one), vf_saturate(vf_sub(vf_set1(2), apart)));
 }
 
-// All nine looked at, for a maximum ...
-HF_INLINE void fill_far_max(const struct hf_setup *s, const float *in, ptrdiff_t stride, const float *coc,
-                            ptrdiff_t coc_stride, float *out, int n)
+// The largest of what nine neighbours bring; part: how much of each counts. With `whole` that is nothing or all of it.
+HF_INLINE vf fill_best(const float *in, ptrdiff_t stride, const vf part[9], const int whole)
 {
+    const vf value = vf_load(in);
+    vf best = value;
+    HF_UNROLL(9)
+    for (int i = 0; i < 9; i++) {
+        const vf t = vf_load(in + (i / 3 - 1) * stride + i % 3 - 1);
+        const vf less = whole ? value : vf_add(value, vf_mul(part[i], vf_sub(t, value)));
+        best = vf_max(vf_select(vf_lt(part[i], vf_set1(1)), less, t), best);
+    }
+    return vf_add(best, vf_zero());
+}
+
+// All nine looked at, for a maximum; how much they count is the same for all channels. Few vectors have neighbours that count in
+// part ...
+HF_INLINE void fill_far_max(const struct hf_setup *s, float *const in[4], ptrdiff_t stride, const float *coc,
+                            ptrdiff_t coc_stride, float *const out[4], int n, const int channels)
+{
+    const vf one = vf_set1(1);
     for (int x = 0; x < n; x += VF_N) {
-        const vf own = vf_load(coc + x), value = vf_load(in + x);
-        vf best = value;
-        for (int i = 0; i < 9; i++) {
-            const vf g = vf_load(coc + (i / 3 - 1) * coc_stride + x + i % 3 - 1);
-            const vf part = fill_counts(s, own, g), t = vf_load(in + (i / 3 - 1) * stride + x + i % 3 - 1);
-            const vf brought = vf_add(value, vf_mul(part, vf_sub(t, value)));
-            best = vf_max(vf_select(vf_lt(part, vf_set1(1)), brought, t), best);
+        const vf own = vf_load(coc + x);
+        const vm is_far = vf_gt(own, vf_zero());
+        if (!vm_any(is_far)) {
+            for (int c = 0; c < channels; c++)
+                vf_store(out[c] + x, vf_load(in[c] + x));
+            continue;
         }
-        vf_store(out + x, vf_select(vf_gt(own, vf_zero()), vf_add(best, vf_zero()), value));
+        vf part[9];
+        vm in_part = vf_gt(vf_zero(), vf_zero());
+        HF_UNROLL(9)
+        for (int i = 0; i < 9; i++) {
+            part[i] = fill_counts(s, own, vf_load(coc + (i / 3 - 1) * coc_stride + x + i % 3 - 1));
+            in_part = vm_or(in_part, vm_and(vf_gt(part[i], vf_zero()), vf_lt(part[i], one)));
+        }
+        const int whole = !vm_any(in_part);
+        for (int c = 0; c < channels; c++) {
+            const float *p = in[c] + x;
+            const vf best = whole ? fill_best(p, stride, part, 1) : fill_best(p, stride, part, 0);
+            vf_store(out[c] + x, vf_select(is_far, best, vf_load(p)));
+        }
     }
 }
 
@@ -164,12 +191,15 @@ static void fill_row(const struct hf_frame *f, int in, int out, const struct hf_
             fill_max_row(from, stride, w, to, n, r.x0, 1, 3);
         else
             fill_max_row(from, stride, w, to, n, r.x0, 0, 3);
+    } else if (hf_chapter(s)->fill == HF_FILL_MAX) {
+        if (s->channels == 4)
+            fill_far_max(s, from, stride, w, want->stride, to, n, 4);
+        else
+            fill_far_max(s, from, stride, w, want->stride, to, n, 3);
     } else {
         for (int c = 0; c < s->channels; c++)
             if (hf_chapter(s)->fill == HF_FILL_NONE)
                 fill_copy_row(from[c], to[c], n);
-            else if (picked && hf_chapter(s)->fill == HF_FILL_MAX)
-                fill_far_max(s, from[c], stride, w, want->stride, to[c], n);
             else if (picked)
                 fill_far_mean(s, from[c], stride, w, want->stride, to[c], n);
             else
