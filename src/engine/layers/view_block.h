@@ -6,12 +6,15 @@
 #include "engine/layers/parts.h"
 #include "engine/layers/views.h"
 
+enum { HF_LAYERS_BLOCK_ROWS = 12 };  // of tiles, at most
+
 // Planes of a slice, under construction.
 struct hf_slice_plane {
     float *at;
     ptrdiff_t row, channel;
     int level, around;      // around: tiles on each side of the block
     int any;                // the slice reaches the block
+    int clear0, clear1;     // the rows that are cleared, and may be read, in its own pixels
     struct hf_rect filled;  // the part that holds samples, in its own pixels
     uint64_t *reached;      // of each row of tiles, from one before the block on: a bit for each tile, likewise
 };
@@ -21,6 +24,7 @@ struct hf_view_block {
     // Pixels of the result have the frame's size, or that of the near stack: log2 of it; `tile` of them are a tile's side.
     int unit, tile;
     struct hf_rect made;  // the pixels that are made
+    uint64_t *blended;    // of each row of tiles, from one before the block on: a bit for each tile where views count
     struct hf_slice_plane *plane;
     struct hf_view_plane *list;
     float *memory;  // of planes

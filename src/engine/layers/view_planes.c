@@ -52,7 +52,9 @@ void hf_layers_place_planes(struct hf_view_block *b, struct hf_scratch *m)
     const size_t slices = (size_t)l->slices;
     b->plane = (struct hf_slice_plane *)(void *)hf_layers_take(m, slices * sizeof *b->plane / sizeof(float), 0);
     b->list = (struct hf_view_plane *)(void *)hf_layers_take(m, slices * sizeof *b->list / sizeof(float), 0);
-    uint64_t *reached = (uint64_t *)(void *)hf_layers_take(m, 2 * slices * (size_t)(b->c.rows + 2), 0);
+    const size_t rows = (size_t)(b->c.rows + 2);
+    b->blended = (uint64_t *)(void *)hf_layers_take(m, 2 * rows, 0);
+    uint64_t *reached = (uint64_t *)(void *)hf_layers_take(m, 2 * slices * rows, 0);
     for (int i = 0; m->memory && i < l->slices; i++)
         b->plane[i] = (struct hf_slice_plane){.reached = reached + i * (b->c.rows + 2)};
     b->memory = hf_layers_take(m, 0, 0);
@@ -106,34 +108,82 @@ static struct hf_slice slice_of(const struct hf_layers *l, const struct hf_slice
     return s;
 }
 
-// Note which tiles are touched. Returns 0 if there are none.
-static int reached(const struct hf_view_block *b, struct hf_slice_plane *p)
+// Leave out samples of tiles whose blur, `by` tiles wide, reaches none of the tiles `seen`: bits as in `blended`.
+static void leave_unseen(const struct hf_view_block *b, const uint64_t *seen, int by)
 {
-    uint64_t any = 0;
+    const struct hf_cell *c = &b->c;
+    // A row of bits must hold the tiles around as well.
+    if (c->columns + 2 + 2 * by > 64)
+        return;
+    for (int ty = c->box.y0; ty < c->box.y1; ty++) {
+        uint64_t row = 0, wide = 0;
+        for (int y = hf_max(ty - by, -1); y <= hf_min(ty + by, c->rows); y++)
+            row |= seen[y + 1];
+        for (int i = 0; i <= 2 * by; i++)
+            wide |= row << i;
+        for (int tx = c->box.x0; tx < c->box.x1; tx++) {
+            const int bit = tx + 1 + by;
+            if (bit < 0 || bit > 63 || !(wide >> bit & 1))
+                *hf_layers_map_at(&c->used, tx, ty) = 0;
+        }
+    }
+}
+
+// Clear the rows of a plane that views of tile rows y0 to y1 may read.
+static void clear_rows(const struct hf_view_block *b, struct hf_slice_plane *p, int y0, int y1)
+{
+    const int size = TILE >> p->level, from = hf_max(y0 - p->around, -p->around) * size,
+              to = hf_min(y1 + p->around, b->c.rows + p->around) * size;
+    if (p->clear0 == p->clear1)
+        p->clear0 = p->clear1 = from;
+    if (from < p->clear0) {
+        memset(p->at + from * p->row - p->around * b->tile, 0, sizeof(float) * (size_t)((p->clear0 - from) * p->row));
+        p->clear0 = from;
+    }
+    if (to > p->clear1) {
+        memset(p->at + p->clear1 * p->row - p->around * b->tile, 0,
+               sizeof(float) * (size_t)((to - p->clear1) * p->row));
+        p->clear1 = to;
+    }
+}
+
+// Place a slice's planes.
+static void begin_planes(const struct hf_view_block *b, int at, size_t *used)
+{
+    struct hf_slice_plane *p = &b->plane[at];
+    const size_t n = shape_plane(b, at, p);
+    p->any = 1;
+    p->at = b->memory + *used + (p->around * TILE >> p->level) * p->row + p->around * b->tile;
+    p->filled = (struct hf_rect){FAR_OFF, FAR_OFF, -FAR_OFF, -FAR_OFF};
+    p->clear0 = p->clear1 = 0;
+    *used += (n + 15) & ~(size_t)15;
+}
+
+// Whether samples of a kind reach tiles where views count. Notes which they are, leaves out all samples that reach none, and
+// begins the planes, those of slice `at`, if they are the first.
+static int reach(struct hf_view_block *b, int i, int at, enum hf_kind kind, const struct hf_slice *s, size_t *used)
+{
+    struct hf_slice_plane *p = &b->plane[at];
+    uint64_t seen[HF_LAYERS_BLOCK_ROWS + 2];
+    int y0 = b->c.rows + 1, y1 = -1;
+    if (!hf_layers_mark_used(&b->c, i, kind) || !hf_layers_mark_touched(&b->c, s, &b->c.touched))
+        return 0;
     for (int ty = -1; ty <= b->c.rows; ty++) {
         uint64_t row = 0;
         for (int tx = -1; tx <= b->c.columns; tx++)
             row |= (uint64_t)(*hf_layers_map_at(&b->c.touched, tx, ty) != 0) << (tx + 1);
-        p->reached[ty + 1] |= row;
-        any |= row;
+        seen[ty + 1] = row & b->blended[ty + 1];
+        p->reached[ty + 1] |= seen[ty + 1];
+        y0 = seen[ty + 1] ? hf_min(y0, ty) : y0;
+        y1 = seen[ty + 1] ? ty + 1 : y1;
     }
-    return any != 0;
-}
-
-// Whether samples of a kind reach the block; begins the planes, those of slice `at`, if they are the first.
-static int reach(struct hf_view_block *b, int i, int at, enum hf_kind kind, const struct hf_slice *s, size_t *used)
-{
-    struct hf_slice_plane *p = &b->plane[at];
-    if (!hf_layers_mark_used(&b->c, i, kind) || !hf_layers_mark_touched(&b->c, s, &b->c.touched) || !reached(b, p))
+    if (y0 >= y1)
         return 0;
-    if (!p->any) {
-        const size_t n = shape_plane(b, at, p);
-        memset(b->memory + *used, 0, sizeof(float) * n);
-        p->at = b->memory + *used + (p->around * TILE >> p->level) * p->row + p->around * b->tile;
-        p->filled = (struct hf_rect){FAR_OFF, FAR_OFF, -FAR_OFF, -FAR_OFF};
-        *used += (n + 15) & ~(size_t)15;
-    }
-    return p->any = 1;
+    leave_unseen(b, seen, hf_layers_blur_tiles(s));
+    if (!p->any)
+        begin_planes(b, at, used);
+    clear_rows(b, p, y0, y1);
+    return 1;
 }
 
 // Add a slice's samples to planes: sums of samples, without their highlights.

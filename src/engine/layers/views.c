@@ -40,7 +40,7 @@ static size_t place(struct hf_view_block *b, struct hf_rect rim, float *memory)
 static void size_block(const struct hf_layers *l, int columns, int rows, int *wide, int *high)
 {
     *wide = hf_min(columns, l->set.near_only ? 20 : 8);
-    *high = hf_min(rows, l->set.near_only ? 12 : 4);
+    *high = hf_min(rows, l->set.near_only ? HF_LAYERS_BLOCK_ROWS : 4);
 }
 
 size_t hf_layers_views_floats(const struct hf_layers *l, int columns, int rows)
@@ -322,6 +322,12 @@ static int make_block(struct hf_view_block *b)
                     (struct hf_rect){tile_of(b->made.x0, b->tile), tile_of(b->made.y0, b->tile),
                                      tile_of(b->made.x1 - 1, b->tile) + 1, tile_of(b->made.y1 - 1, b->tile) + 1}))
         return 0;
+    for (int ty = -1; ty <= b->c.rows; ty++) {
+        uint64_t row = 0;
+        for (int tx = -1; tx <= b->c.columns; tx++)
+            row |= (uint64_t)is_blended(&b->c, (struct hf_rect){tx, ty, tx + 1, ty + 1}) << (tx + 1);
+        b->blended[ty + 1] = row;
+    }
     hf_layers_find_present(&b->c);
     hf_layers_mark_plain(&b->c);
     memset(b->c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)b->c.source.row * TILE);
