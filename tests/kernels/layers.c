@@ -389,8 +389,7 @@ static void drawing_call(struct world *w, const struct kernels *k, enum arena a,
     const struct hf_layers_kernels *s = &k->layers;
     float *const out = line(w, a, IN);
     if (which == LAYERS_DISC)
-        s->disc(&now.slice, line(w, a, 0), line(w, a, 1), w->n, now.from, now.to, line(w, a, IN + DISC_ROWS),
-                stride(w));
+        disc_call(w, k, a);
     else if (which == LAYERS_RUNS)
         s->runs(now.run, now.taps, line(w, a, 0), stride(w), now.with ? line(w, a, 6) : NULL, w->n, out);
     else if (which == LAYERS_WEIGHTS)

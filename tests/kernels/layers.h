@@ -8,7 +8,8 @@
 #include "engine/layers/patterns.h"
 #include "engine/layers/views.h"
 
-enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, DISC_ROWS = 13, PLANES = 3, VIEWS = 9 };
+enum { ROOM = 64, IN = 56, OUT = 32, LINES = IN + OUT, MOST = 40, PLANES = 3, VIEWS = 9 };
+enum { DISC_ROWS = 13, DISC_LINES = 2 * DISC_ROWS + 2 };  // of a disc on either side, and of what it is drawn to
 
 struct layers_case {
     int which, channels, rows, add, with, whole, taps;
@@ -100,6 +101,7 @@ void weigh_call(const struct world *w, const struct kernels *k, enum arena a);
 void views_make(struct world *w);
 void views_call(const struct world *w, const struct kernels *k, enum arena a);
 void disc_make(struct world *w);
+void disc_call(const struct world *w, const struct kernels *k, enum arena a);
 void dim_make(struct world *w);
 void passed_make(struct world *w);
 void passed_call(struct world *w, const struct kernels *k, enum arena a);

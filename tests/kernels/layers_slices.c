@@ -156,20 +156,39 @@ void disc_make(struct world *w)
     }
     now.from = rng_int(r, -DISC_ROWS, 0);
     now.to = rng_int(r, now.from, DISC_ROWS + 1);
-    for (int i = 0; i < 2; i++)
-        fill(w, i, -MOST - 2, w->n + MOST + 2, COLOUR);
-    // Often few sources; sums begin with 0, so none is -0.
+    // Colours, then weights; where those are 0, colours are too. Often few sources; sums begin with 0, so none is -0.
     const int sparse = rng_one_in(r, 2);
-    for (int i = 0; sparse && i < 2; i++)
-        for (int x = -MOST - 2; x < w->n + MOST + 2; x++)
-            line(w, ARENA_MADE, i)[x] = rng_one_in(r, 40) ? line(w, ARENA_MADE, i)[x] : 0;
-    for (int i = 0; i < 2 * DISC_ROWS + 2; i++) {
-        fill(w, IN + i, 0, w->n, COLOUR);
+    for (int i = 0; i < 2; i++) {
+        fill(w, i, -MOST - 2, w->n + MOST + 2, COLOUR);
+        fill(w, 2 + i, -MOST - 2, w->n + MOST + 2, WEIGHT);
+        for (int x = -MOST - 2; x < w->n + MOST + 2; x++) {
+            float *colour = &line(w, ARENA_MADE, i)[x], *weight = &line(w, ARENA_MADE, 2 + i)[x];
+            *weight = !sparse || rng_one_in(r, 40) ? *weight : 0;
+            *colour = *weight > 0 ? *colour : 0;
+        }
+    }
+    for (int i = 0; i < 2 * DISC_LINES; i++) {
+        fill(w, LINES - 1 - i, 0, w->n, COLOUR);
         for (int x = 0; x < w->n; x++)
-            line(w, ARENA_MADE, IN + i)[x] += 0.0f;
-        put(w, IN + i, w->n, 32);
+            line(w, ARENA_MADE, LINES - 1 - i)[x] += 0.0f;
+        put(w, LINES - 1 - i, w->n, 32);
     }
     now.roundings = 4 * MOST + 8;
+}
+
+void disc_call(const struct world *w, const struct kernels *k, enum arena a)
+{
+    const struct hf_layers_sources in = {.upper = line(w, a, 0),
+                                         .lower = line(w, a, 1),
+                                         .plane = 2 * stride(w),
+                                         .planes = 2,
+                                         .n = w->n,
+                                         .from = now.from,
+                                         .to = now.to,
+                                         .out = line(w, a, LINES - 2 * DISC_LINES + DISC_ROWS),
+                                         .out_plane = DISC_LINES * stride(w),
+                                         .stride = stride(w)};
+    k->layers.disc(&now.slice, &in);
 }
 
 void runs_make(struct world *w)

@@ -48,8 +48,8 @@ static float disc_row(const float *in, int x, struct hf_disc_row row, int *have,
     return row.f * pair_of(in, x, *have + 1) + *sum;
 }
 
-void hf_layers_disc_c(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
-                      float *out, ptrdiff_t stride)
+static void disc_plane(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
+                       float *out, ptrdiff_t stride)
 {
     for (int x = 0; x < n; x++) {
         float sum[2] = {0}, last[2] = {0};
@@ -65,4 +65,11 @@ void hf_layers_disc_c(const struct hf_slice *s, const float *upper, const float 
             last[1] = l;
         }
     }
+}
+
+void hf_layers_disc_c(const struct hf_slice *s, const struct hf_layers_sources *in)
+{
+    for (int i = 0; i < in->planes; i++)
+        disc_plane(s, in->upper + i * in->plane, in->lower + i * in->plane, in->n, in->from, in->to,
+                   in->out + i * in->out_plane, in->stride);
 }

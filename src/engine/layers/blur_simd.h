@@ -175,19 +175,28 @@ HF_INLINE void layers_disc_of(const struct hf_slice *s, const float *upper, cons
     }
 }
 
-// Vectors that no source reaches get nothing: spans are wider than their sources need, and small things fill few pixels.
-static void layers_disc_simd(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
-                             float *out, ptrdiff_t stride)
+// The same for all planes.
+HF_INLINE void layers_disc_planes(const struct hf_slice *s, const struct hf_layers_sources *in, const int side, int x)
 {
+    for (int i = 0; i < in->planes; i++)
+        layers_disc_of(s, in->upper + i * in->plane + x, in->lower + i * in->plane + x, side, in->from, in->to,
+                       in->out + i * in->out_plane + x, in->stride);
+}
+
+// Vectors that no source reaches get nothing: spans are wider than their sources need, and small things fill few pixels. Weights
+// tell for all planes.
+static void layers_disc_simd(const struct hf_slice *s, const struct hf_layers_sources *in)
+{
+    const float *upper = in->upper + (in->planes - 1) * in->plane, *lower = in->lower + (in->planes - 1) * in->plane;
     int x = 0;
-    while (x < n)
+    while (x < in->n)
         if (!layers_reached(upper + x, lower + x, s->reach)) {
             x += VF_N;
-        } else if (x + LAYERS_SIDE * VF_N <= n) {
-            layers_disc_of(s, upper + x, lower + x, LAYERS_SIDE, from, to, out + x, stride);
+        } else if (x + LAYERS_SIDE * VF_N <= in->n) {
+            layers_disc_planes(s, in, LAYERS_SIDE, x);
             x += LAYERS_SIDE * VF_N;
         } else {
-            layers_disc_of(s, upper + x, lower + x, 1, from, to, out + x, stride);
+            layers_disc_planes(s, in, 1, x);
             x += VF_N;
         }
 }

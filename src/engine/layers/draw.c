@@ -205,9 +205,18 @@ static void draw_span(const struct hf_cell *c, const struct hf_build *b, int at,
     const int margin = s->level ? MARGIN : 0, height = c->rows * (TILE >> s->level);
     for (int i = 0; s->shape && i < 2; i++)
         hf_layers_draw_shape(c, b, source_at(c, 0, x0, y + i), at + i, x0, x1, to);
-    for (int i = b->first; !s->shape && i < b->channels; i++)
-        c->k->disc(s, source_at(c, i, x0, y), source_at(c, i, x0, y + 1), x1 - x0, -margin - at, height + margin - at,
-                   to->at + at * to->row + i * to->channel + x0, to->row);
+    const struct hf_layers_sources rows = {.upper = source_at(c, b->first, x0, y),
+                                           .lower = source_at(c, b->first, x0, y + 1),
+                                           .plane = c->source.channel,
+                                           .planes = b->channels - b->first,
+                                           .n = x1 - x0,
+                                           .from = -margin - at,
+                                           .to = height + margin - at,
+                                           .out = to->at + at * to->row + b->first * to->channel + x0,
+                                           .out_plane = to->channel,
+                                           .stride = to->row};
+    if (!s->shape)
+        c->k->disc(s, &rows);
 }
 
 // Draw two rows of sources of a row of tiles. Spans are aligned to vectors; between two spans all sources are 0.

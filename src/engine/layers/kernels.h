@@ -78,9 +78,16 @@ typedef void hf_layers_weigh(const struct hf_slice *s, const float *const in[6],
                              int rows, int channels, int n, int add, float *const out[5], uint8_t *any);
 // Sums of pairs of 2n numbers; out may be in.
 typedef void hf_layers_fold(const float *in, int n, float *out);
-// Draw n sources of two adjacent rows, blurred by s, into rows from..to; out is the row of the upper one.
-typedef void hf_layers_disc(const struct hf_slice *s, const float *upper, const float *lower, int n, int from, int to,
-                            float *out, ptrdiff_t stride);
+// Draw n sources of two adjacent rows, blurred by s, into rows from..to; out is the row of the upper one. Planes lie `plane` and
+// `out_plane` floats apart; the last one holds weights, and where these are 0 the others are too.
+struct hf_layers_sources {
+    const float *upper, *lower;
+    ptrdiff_t plane;
+    int planes, n, from, to;
+    float *out;
+    ptrdiff_t out_plane, stride;
+};
+typedef void hf_layers_disc(const struct hf_slice *s, const struct hf_layers_sources *in);
 // Sums of n numbers and the numbers `apart` places after them.
 typedef void hf_layers_pairs(const float *in, int apart, int n, float *out);
 // Add runs of a row of sources to n pixels, each times its `part` if that is given. window: sums of 2^k sources, one
