@@ -198,7 +198,7 @@ static void blend_call(const struct world *w, const struct kernels *k, enum aren
     set_of(w, a, 0, in);
     for (int c = 0; c < 4; c++)
         to.colour[c] = line(w, a, IN + c);
-    k->layers.blend(&to, now.channels, (const float *const *)in, (enum hf_layers_sums)(now.rows % 4), w->n);
+    k->layers.blend(&to, now.channels, in, (enum hf_layers_sums)(now.rows % 4), w->n);
 }
 
 static void finish_call(const struct world *w, const struct kernels *k, enum arena a)
@@ -370,6 +370,13 @@ void layers_make(struct world *w, int which)
     default:  // stacks
         for (int i = 0; i < 4; i++)
             fill_set(w, 6 * i, 0, w->n);
+        // Slices' sums, which are cleared; they begin with 0, which has no sign.
+        for (int c = 0; which == LAYERS_BLEND && c < 5; c++) {
+            for (int x = 0; x < w->n; x++)
+                line(w, ARENA_MADE, c)[x] += 0.0f;
+            if (c < now.channels || c == 4)
+                put(w, c, w->n, 32);
+        }
         for (int i = 0; i < 7; i++)
             fill(w, IN + i, 0, w->n, i < 4 ? COLOUR : WEIGHT);
         fill(w, IN + 8, 0, w->n, WEIGHT);

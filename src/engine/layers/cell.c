@@ -72,9 +72,13 @@ static size_t place(struct hf_cell *c, float *memory)
     c->corners = c->columns + 3;
     c->blend = hf_layers_take(&m, (size_t)c->corners * (size_t)(c->rows + 3), c->corners + 1);
     c->seen_by_views = take_map(&m, c->columns, c->rows, 1);
+    c->left = take_map(&m, c->columns, c->rows, 1);
+    c->fresh = take_map(&m, c->columns, c->rows, 1);
     struct hf_tile_map *const maps[] = {&c->near, &c->far, &c->middle, &c->begun, &c->lit[0], &c->lit[1], &c->covered};
     for (int i = 0; i < 7; i++)
         *maps[i] = take_map(&m, c->columns, c->rows, 1);
+    for (int i = 0; i <= HF_LAYERS_COARSEST; i++)
+        c->clean[i] = take_map(&m, c->columns, c->rows, 1);
     for (int i = 0; i <= HF_LAYERS_COARSEST; i++)
         c->sum[i] = take_window(&m, width >> i, height >> i, channels + 1);
     for (int i = 0; i < 3; i++)
@@ -113,8 +117,9 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     hf_layers_find_present(&c);
     hf_layers_mark_plain(&c);
     memset(c.source.at - (l->most_tiles * TILE + AROUND), 0, sizeof(float) * (size_t)c.source.row * TILE);
-    struct hf_tile_map *const maps[] = {&c.near, &c.far, &c.middle, &c.begun, &c.lit[0], &c.lit[1], &c.covered};
-    for (int i = 0; i < 7; i++)
+    struct hf_tile_map *const maps[] = {&c.near,    &c.far,      &c.middle,   &c.begun,    &c.lit[0],  &c.lit[1],
+                                        &c.covered, &c.clean[0], &c.clean[1], &c.clean[2], &c.clean[3]};
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
         for (int ty = -1; ty <= c.rows; ty++)
             memset(hf_layers_map_at(maps[i], -1, ty), 0, (size_t)c.columns + 2);
     int i = 0;

@@ -14,8 +14,7 @@ void hf_layers_up_c(const float *a, const float *b, int n, float *out)
     }
 }
 
-void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float *const in[5], enum hf_layers_sums sums,
-                       int n)
+void hf_layers_blend_c(const struct hf_stack_row *to, int channels, float *const in[5], enum hf_layers_sums sums, int n)
 {
     for (int x = 0; x < n; x++) {
         const float v = in[4][x], open = to->open[x],
@@ -24,8 +23,11 @@ void hf_layers_blend_c(const struct hf_stack_row *to, int channels, const float 
         const float hold = sums == HF_SUMS_HELD ? (v < to->held[x] ? v : to->held[x]) : 0;
         const float k = hold > 0 ? (v - hold < open ? v - hold : open) / v : open / (v > least ? v : least);
         const float left = open - k * v;
-        for (int c = 0; c < channels; c++)
+        for (int c = 0; c < channels; c++) {
             to->colour[c][x] = k * in[c][x] + to->colour[c][x];
+            in[c][x] = 0;
+        }
+        in[4][x] = 0;
         to->weight[x] = k * v + to->weight[x];
         to->open[x] = left > 0 ? left : 0;
         if (sums == HF_SUMS_HELD)

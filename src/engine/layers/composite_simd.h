@@ -19,7 +19,7 @@ static void layers_up_simd(const float *a, const float *b, int n, float *out)
 }
 
 // Whether any sum or weight of a vector is not 0.
-HF_INLINE int layers_is_any(const float *const in[5], const int channels, int x)
+HF_INLINE int layers_is_any(float *const in[5], const int channels, int x)
 {
     vm any = vf_ne(vf_load(in[4] + x), vf_zero());
     for (int c = 0; c < channels; c++)
@@ -28,7 +28,7 @@ HF_INLINE int layers_is_any(const float *const in[5], const int channels, int x)
 }
 
 // Most of a slice's plane is 0. Such vectors are skipped.
-HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, const float *const in[5],
+HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels, float *const in[5],
                                const enum hf_layers_sums sums, int n)
 {
     const vf tiny = vf_set1(1e-30f);
@@ -43,8 +43,11 @@ HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels
             k = vf_select(vf_gt(hold, vf_zero()), vf_div(vf_min(vf_sub(v, hold), open), v), k);
             vf_store(to->held + x, vf_sub(held, hold));
         }
-        for (int c = 0; c < channels; c++)
+        for (int c = 0; c < channels; c++) {
             vf_store(to->colour[c] + x, vf_fma(k, vf_load(in[c] + x), vf_load(to->colour[c] + x)));
+            vf_store(in[c] + x, vf_zero());
+        }
+        vf_store(in[4] + x, vf_zero());
         vf_store(to->weight + x, vf_fma(k, v, vf_load(to->weight + x)));
         vf_store(to->open + x, vf_max(vf_fnma(k, v, open), vf_zero()));
         if (sums != HF_SUMS_HIDING)
@@ -52,7 +55,7 @@ HF_INLINE void layers_blend_of(const struct hf_stack_row *to, const int channels
     }
 }
 
-HF_INLINE void layers_blend_sums(const struct hf_stack_row *to, const int channels, const float *const in[5],
+HF_INLINE void layers_blend_sums(const struct hf_stack_row *to, const int channels, float *const in[5],
                                  enum hf_layers_sums sums, int n)
 {
     if (sums == HF_SUMS_HIDING)
@@ -65,8 +68,8 @@ HF_INLINE void layers_blend_sums(const struct hf_stack_row *to, const int channe
         layers_blend_of(to, channels, in, HF_SUMS_HIDDEN, n);
 }
 
-static void layers_blend_simd(const struct hf_stack_row *to, int channels, const float *const in[5],
-                              enum hf_layers_sums sums, int n)
+static void layers_blend_simd(const struct hf_stack_row *to, int channels, float *const in[5], enum hf_layers_sums sums,
+                              int n)
 {
     HF_WITH_CHANNELS(channels, layers_blend_sums(to, CHANNELS, in, sums, n));
 }

@@ -4,9 +4,8 @@
 
 #include "engine/layers/parts.h"
 
-// Clear the tiles that the slice's blur reaches, and the margin that is read around them.
-static void clear_touched(const struct hf_cell *c, const struct hf_tile_map *m, const struct hf_window *w, int level,
-                          int first, int channels)
+void hf_layers_clear_tiles(const struct hf_cell *c, const struct hf_tile_map *m, const struct hf_window *w, int level,
+                           int first, int channels)
 {
     const int margin = level ? MARGIN : 0, height = c->rows * (TILE >> level), around = level ? 2 : 0;
     for (int ty = -1; ty <= c->rows && !hf_stopped(c->l->stop); ty++)
@@ -250,13 +249,11 @@ struct held {
     int from, y0, y1;
 };
 
-void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
-                          const struct hf_window *to)
+void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_window *to)
 {
     const int size = TILE >> b->s->level, margin = b->s->level ? MARGIN : 0;
     const struct hf_rect with = hf_layers_tiles_with_samples(c);
     struct held held = {0};
-    clear_touched(c, touched, to, b->s->level, b->first, b->channels);
     if (b->s->shape)
         hf_layers_begin_shape(c, b->s);
     for (int ty = c->box.y0; ty < c->box.y1 && !hf_stopped(c->l->stop); ty++) {

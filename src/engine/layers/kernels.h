@@ -103,13 +103,13 @@ typedef void hf_layers_up(const float *a, const float *b, int n, float *out);
 // A row of pixels seen from many points of the lens.
 struct hf_view_row;
 typedef void hf_layers_views(const struct hf_view_row *row);
-// Put sums of a slice (weight at 4) under what a stack holds.
+// Put sums of a slice (weight at 4) under what a stack holds, and clear them.
 // HIDING: visible samples that hide others; hidden samples keep all they may cover. SEEN: visible samples behind those;
 // they reduce what hidden samples may cover. HELD: as SEEN, but as much coverage as to->held says is withheld, and
 // to->held shrinks by it. HIDDEN: hidden samples.
 enum hf_layers_sums { HF_SUMS_HIDING, HF_SUMS_SEEN, HF_SUMS_HELD, HF_SUMS_HIDDEN };
-typedef void hf_layers_blend(const struct hf_stack_row *to, int channels, const float *const in[5],
-                             enum hf_layers_sums sums, int n);
+typedef void hf_layers_blend(const struct hf_stack_row *to, int channels, float *const in[5], enum hf_layers_sums sums,
+                             int n);
 // Add light as far as it is seen: out += part * in.
 typedef void hf_layers_light(const float *part, const float *in, int n, float *out);
 // The final n pixels from the near sums and, if not NULL, the far ones and light. Light is added as it is; its weights (4) are

@@ -12,7 +12,8 @@ static void draw(const struct hf_cell *c, int number)
                                .set = &c->samples->seen,
                                .weight = c->samples->share,
                                .channels = c->l->channels + 1};
-    hf_layers_draw_slice(c, &b, &c->shone, &c->shine);
+    hf_layers_clear_tiles(c, &c->shone, &c->shine, 0, 0, b.channels);
+    hf_layers_draw_slice(c, &b, &c->shine);
 }
 
 // Whether shares of one radius are left out of the slices of a stack, which have less than full resolution.

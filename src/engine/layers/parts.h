@@ -54,8 +54,11 @@ struct hf_cell {
     float *blend;
     int corners;
     struct hf_tile_map seen_by_views;  // tiles of the near stack that views alone make
+    struct hf_tile_map left;           // those of them that a slice reaches, and does not draw
     int covering;                      // the far stack is somewhere not fully open at its start
+    // Sums are 0 between two slices: who reads them clears them. clean: of each level, tiles that were cleared at first.
     struct hf_window source, sum[HF_LAYERS_COARSEST + 1];
+    struct hf_tile_map clean[HF_LAYERS_COARSEST + 1], fresh;
     struct hf_tile_map shone;             // tiles that the blurred shares of one radius reach
     struct hf_window shine;               // their sums
     struct hf_window stack[3], light[2];  // near, far and middle; highlights of near and far
@@ -165,8 +168,10 @@ void hf_layers_place_sources(struct hf_cell *c, struct hf_scratch *m);
 // Pointers to a set's planes at a pixel.
 void hf_layers_planes_at(const struct hf_layers *l, const struct hf_layers_set *set, const float *weight, int x, int y,
                          const float *in[6]);
-void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_tile_map *touched,
-                          const struct hf_window *to);
+// Clear the tiles of a map, and the margin that is read around them.
+void hf_layers_clear_tiles(const struct hf_cell *c, const struct hf_tile_map *m, const struct hf_window *w, int level,
+                           int first, int channels);
+void hf_layers_draw_slice(const struct hf_cell *c, const struct hf_build *b, const struct hf_window *to);
 // Hand a slice's sources to `take`, run by run: n pixels of the slice's resolution from (x, y) on, a channel every so many
 // floats.
 typedef void hf_layers_taker(void *to, const float *in, ptrdiff_t channel, int x, int y, int n);
@@ -226,7 +231,8 @@ void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff
 // views.c
 // Find where views count in a cell. Returns 0 if they do not at all.
 int hf_layers_find_views(struct hf_cell *c);
-// Leave out what a slice of the near stack would draw in tiles that views alone make. Returns 0 if nothing is left to draw.
+// Leave out what a slice of the near stack would draw in tiles that views alone make, and note them. Returns 0 if nothing is left
+// to draw.
 int hf_layers_leave_to_views(struct hf_cell *c, const struct hf_slice *s);
 // Put views in the place of what the near stack holds, or with near_only 0 of a cell's result, out. memory:
 // hf_layers_views_floats() floats.

@@ -28,10 +28,40 @@ static void refine(struct hf_cell *c, const struct hf_tile_map *touched, int lev
         }
 }
 
-// Put the sums of a slice under what a stack holds.
+// A map's bytes, with the tiles around, lie without gaps.
+static uint8_t *first_of(const struct hf_tile_map *m)
+{
+    return m->at - m->stride - 1;
+}
+
+static int bytes_of(const struct hf_cell *c)
+{
+    return (c->columns + 2) * (c->rows + 2);
+}
+
+// Clear sums of the touched tiles where no slice has been yet, and draw a slice.
+static void draw(struct hf_cell *c, const struct hf_build *b)
+{
+    const int level = b->s->level, n = bytes_of(c);
+    uint8_t *fresh = first_of(&c->fresh), *clean = first_of(&c->clean[level]);
+    const uint8_t *touched = first_of(&c->touched);
+    uint8_t any = 0;
+    for (int i = 0; i < n; i++) {
+        const uint8_t had = clean[i], is = touched[i], first = is & (uint8_t)~had;
+        fresh[i] = first;
+        clean[i] = had | is;
+        any |= first;
+    }
+    // All channels are cleared, as the next slice may draw more of them.
+    if (any)
+        hf_layers_clear_tiles(c, &c->fresh, &c->sum[level], level, 0, c->l->channels + 1);
+    hf_layers_draw_slice(c, b, &c->sum[level]);
+}
+
+// Put the sums of a slice under what a stack holds, and clear them.
 static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_sums sums)
 {
-    const int finest = stack == MIDDLE ? 0 : 1, channels = c->l->channels;
+    const int finest = stack == MIDDLE ? 0 : 1, channels = c->l->channels, coarsest = level;
     while (level > finest + 1)
         refine(c, &c->touched, level--);
     const struct hf_window *from = &c->sum[level];
@@ -41,9 +71,9 @@ static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_su
             hf_layers_clip_rows(c, finest, ty, &y0, &y1);
             for (int y = y0; y < y1; y++) {
                 const struct hf_stack_row to = hf_layers_stack_at(c, stack, s.x0, y);
-                const float *in[5];
+                float *in[5];
                 for (int i = 0; i <= channels; i++) {
-                    const float *a = from->at + (y >> (level - finest)) * from->row + i * from->channel;
+                    float *a = from->at + (y >> (level - finest)) * from->row + i * from->channel;
                     const int as = i < channels ? i : 4;
                     in[as] = level > finest ? c->row[as] : a + s.x0;
                     if (level > finest)
@@ -53,13 +83,30 @@ static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_su
                 c->k->blend(&to, channels, in, sums, s.x1 - s.x0);
             }
         }
+    // Rows that are upsampled are read more than once.
+    for (level = coarsest; level > finest; level--)
+        hf_layers_clear_tiles(c, &c->touched, &c->sum[level], level, 0, channels + 1);
+}
+
+// Draw a slice, put it under what a stack holds, and leave no sums.
+static void put(struct hf_cell *c, const struct hf_build *b, int stack, enum hf_layers_sums sums)
+{
+    const int level = b->s->level, leaves = stack == NEAR && c->views && c->l->set.near_only;
+    if (stack == NEAR && !hf_layers_leave_to_views(c, b->s))
+        return;
+    draw(c, b);
+    put_under(c, stack, level, sums);
+    if (leaves)
+        hf_layers_clear_tiles(c, &c->left, &c->sum[level], level, 0, c->l->channels + 1);
 }
 
 static void mark(const struct hf_cell *c, const struct hf_tile_map *from, struct hf_tile_map *to)
 {
-    for (int ty = -1; ty <= c->rows; ty++)
-        for (int tx = -1; tx <= c->columns; tx++)
-            *hf_layers_map_at(to, tx, ty) |= *hf_layers_map_at(from, tx, ty);
+    const uint8_t *in = first_of(from);
+    uint8_t *out = first_of(to);
+    const int n = bytes_of(c);
+    for (int i = 0; i < n; i++)
+        out[i] |= in[i];
 }
 
 // Fill one row of a tile in a window's channel.
@@ -154,10 +201,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
         begin(c, stack);
         if (s->radius != 0)
             mark(c, &c->touched, reached);
-        if (stack != NEAR || hf_layers_leave_to_views(c, s)) {
-            hf_layers_draw_slice(c, &b, &c->touched, &c->sum[s->level]);
-            put_under(c, stack, s->level, sums_of(l, s, stack));
-        }
+        put(c, &b, stack, sums_of(l, s, stack));
     }
     // Next to the focus, the border between visible and hidden samples must be as fine as the picture; at quads'
     // resolution a line would stay open.
@@ -173,10 +217,7 @@ void hf_layers_put_slice(struct hf_cell *c, int i)
                                    .more = &c->samples->beyond};
         begin(c, stack);
         mark(c, &c->touched, reached);
-        if (stack != NEAR || hf_layers_leave_to_views(c, behind)) {
-            hf_layers_draw_slice(c, &b, &c->touched, &c->sum[behind->level]);
-            put_under(c, stack, behind->level, HF_SUMS_HIDDEN);
-        }
+        put(c, &b, stack, HF_SUMS_HIDDEN);
     }
 }
 
@@ -197,7 +238,7 @@ static void cover_with(struct hf_cell *c, enum hf_kind kind)
     if (!hf_layers_mark_used(c, l->last + 1, kind) || !hf_layers_mark_touched(c, s, &c->touched))
         return;
     const struct hf_window *from = &c->sum[1];
-    hf_layers_draw_slice(c, &b, &c->touched, from);
+    draw(c, &b);
     begin_stack(c, FAR);
     c->covering = 1;
     mark(c, &c->touched, &c->covered);
@@ -215,6 +256,7 @@ static void cover_with(struct hf_cell *c, enum hf_kind kind)
                 }
             }
         }
+    hf_layers_clear_tiles(c, &c->touched, from, 1, l->channels, l->channels + 1);
 }
 
 // Divide the far stack by its initial openness, so that partly covered edges sum to 1. The divisor is at least

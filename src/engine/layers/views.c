@@ -150,7 +150,9 @@ int hf_layers_leave_to_views(struct hf_cell *c, const struct hf_slice *s)
     for (int ty = -1; ty <= c->rows; ty++)
         for (int tx = -1; tx <= c->columns; tx++) {
             uint8_t *touched = hf_layers_map_at(&c->touched, tx, ty);
-            *touched &= !*hf_layers_map_at(&c->seen_by_views, tx, ty);
+            const uint8_t seen = *hf_layers_map_at(&c->seen_by_views, tx, ty);
+            *hf_layers_map_at(&c->left, tx, ty) = *touched & seen;
+            *touched &= !seen;
             left |= *touched;
         }
     for (int ty = c->box.y0; left && ty < c->box.y1; ty++)
