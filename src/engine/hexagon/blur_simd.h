@@ -140,7 +140,9 @@ HF_INLINE struct hex_sums hex_found(const struct hf_hexagon_field *in, const str
     const vf o = hex_own(s->a, p), all = vf_add(s->a, o), scale = vf_div(vf_set1(1), all);
     const vf mine = vf_div(o, vf_load(hf_at(in->weight, in->a, x, y)));
     const vm is = vf_gt(p, vf_zero());
-    struct hex_sums found = {.a = vf_keep(is, all), .w = vf_zero()};
+    struct hex_sums found;  // no initialiser: gcc would clear all of it by a string instruction
+    found.a = vf_keep(is, all);
+    found.w = vf_zero();
     if (first) {
         const vf own = vf_load(hf_at(in->weight, in->mean, x, y));
         found.w = vf_keep(is, vf_mul(vf_fma(mine, own, s->w), scale));

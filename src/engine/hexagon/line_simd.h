@@ -182,6 +182,7 @@ HF_INLINE void hex_fetch(const struct hf_hexagon_field *in, const int channels, 
         for (int c = 0; c < channels; c++)
             __builtin_prefetch(hf_at(in->colour, c, x, y + i), 0, 2);
         __builtin_prefetch(hf_at(in->weight, in->a, x, y + i), 0, 2);
+        __builtin_prefetch(hf_at(in->weight, in->mean, x, y + i), 0, 2);
         __builtin_prefetch(hf_at(in->radius, in->q, x, y + i), 0, 2);
     }
 }
