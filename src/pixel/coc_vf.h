@@ -40,11 +40,17 @@ HF_INLINE vf coc_round(enum hf_storage storage, vf t)
     return storage == HF_STORAGE_HALF ? round_half_vf(t) : t;
 }
 
-// The variable that CoC is linear in, from depth samples d. none: lanes without a surface. px, py: pixel centres
+// The variable that CoC is linear in, from view depths.
+HF_INLINE vf coc_of_z(const struct hf_setup *s, vf z)
+{
+    return s->lens ? vf_div(vf_set1(-1), z) : z;
+}
+
+// The same from depth samples d. none: lanes without a surface. px, py: pixel centres
 // relative to the optical axis.
 HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form form, vf d, vf px, vf py, vm *none)
 {
-    const vf infinity = vf_set1(__builtin_inff()), minus_one = vf_set1(-1);
+    const vf infinity = vf_set1(__builtin_inff());
     vf z;
     if (form == HF_FORM_COC) {
         *none = vm_not(vf_lt(d, vf_set1(1e10f)));
@@ -65,20 +71,14 @@ HF_INLINE vf coc_variable(const struct hf_setup *s, const enum hf_depth_form for
     }
     if (form != HF_FORM_Z)
         *none = vm_not(vf_lt(z, vf_set1(1e10f)));
-    return s->lens ? vf_div(minus_one, z) : z;
-}
-
-// The variable of surfaces' view depths.
-HF_INLINE vf coc_of_z(const struct hf_setup *s, vf z)
-{
-    return s->lens ? vf_div(vf_set1(-1), z) : z;
+    return coc_of_z(s, z);
 }
 
 // Is any of these view depths, whose bits these are, none of a surface? The bits of surfaces lie between those of 0 and of 1e10,
 // and bits less 1 as unsigned numbers are larger for all else.
 HF_INLINE int coc_misses_some(vi a, vi b, vi c, vi d)
 {
-    const vi one = vi_set1(1), last = vi_set1(0x501502f9 - 2);
+    const vi one = vi_set1(1), last = vi_set1(hf_bits(1e10f) - 2);
     const vi most = vi_max(vi_max(vi_sub(a, one), vi_sub(b, one)), vi_max(vi_sub(c, one), vi_sub(d, one)));
     return vi_any(vi_xor(vi_max(most, last), last));
 }
@@ -95,9 +95,15 @@ HF_INLINE vf coc_near(const struct hf_setup *s, vf v)
     return coc_round(s->storage, coc_ramp(s, vf_mul(vf_sub(vf_set1(s->near_0), v), vf_set1(s->near_i))));
 }
 
+// Far CoC before it is bound and shaped.
+HF_INLINE vf coc_far_line(const struct hf_setup *s, vf v)
+{
+    return vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i));
+}
+
 HF_INLINE vf coc_far(const struct hf_setup *s, vf v)
 {
-    return coc_round(s->storage, coc_ramp(s, vf_mul(vf_sub(v, vf_set1(s->far_0)), vf_set1(s->far_i))));
+    return coc_round(s->storage, coc_ramp(s, coc_far_line(s, v)));
 }
 
 // What most frames have becomes a constant: linear CoC of view depth, which buffers hold as it is; of the range model and of a
@@ -114,7 +120,7 @@ HF_INLINE enum coc_how coc_how(const struct hf_setup *s)
 // Far CoC of the range model from view depths, if coc_how says so.
 HF_INLINE vf coc_far_plain(const struct hf_setup *s, vf z)
 {
-    return vf_saturate(vf_mul(vf_sub(z, vf_set1(s->far_0)), vf_set1(s->far_i)));
+    return vf_saturate(coc_far_line(s, z));
 }
 
 #endif

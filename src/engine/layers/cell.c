@@ -129,7 +129,7 @@ void hf_layers_cell(const struct hf_layers *l, const struct hf_samples *samples,
     while (i < l->slices && l->slice[i].level > 0 && l->slice[i].radius < 0 && !hf_stopped(l->stop))
         hf_layers_put_slice(&c, i++);
     hf_layers_draw_lights(&c, NEAR);
-    if (c.views && l->set.near_only && c.opened[NEAR])
+    if (hf_layers_views_are_near(&c) && c.opened[NEAR])
         hf_layers_put_views(&c, rest, out, stride);
     hf_layers_begin_middle(&c);
     for (; i < l->slices && !hf_stopped(l->stop); i++) {

@@ -231,6 +231,11 @@ void hf_layers_finish_cell(const struct hf_cell *c, float *const out[4], ptrdiff
 // views.c
 // Find where views count in a cell. Returns 0 if they do not at all.
 int hf_layers_find_views(struct hf_cell *c);
+// Whether views stand in for slices of the near stack in some tiles.
+static inline int hf_layers_views_are_near(const struct hf_cell *c)
+{
+    return c->views && c->l->set.near_only;
+}
 // Leave out what a slice of the near stack would draw in tiles that views alone make, and note them. Returns 0 if nothing is left
 // to draw.
 int hf_layers_leave_to_views(struct hf_cell *c, const struct hf_slice *s);

@@ -91,12 +91,12 @@ static void put_under(struct hf_cell *c, int stack, int level, enum hf_layers_su
 // Draw a slice, put it under what a stack holds, and leave no sums.
 static void put(struct hf_cell *c, const struct hf_build *b, int stack, enum hf_layers_sums sums)
 {
-    const int level = b->s->level, leaves = stack == NEAR && c->views && c->l->set.near_only;
+    const int level = b->s->level;
     if (stack == NEAR && !hf_layers_leave_to_views(c, b->s))
         return;
     draw(c, b);
     put_under(c, stack, level, sums);
-    if (leaves)
+    if (stack == NEAR && hf_layers_views_are_near(c))
         hf_layers_clear_tiles(c, &c->left, &c->sum[level], level, 0, c->l->channels + 1);
 }
 

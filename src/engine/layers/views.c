@@ -145,7 +145,7 @@ int hf_layers_leave_to_views(struct hf_cell *c, const struct hf_slice *s)
 {
     const int by = hf_layers_blur_tiles(s);
     int left = 0;
-    if (!c->views || !c->l->set.near_only)
+    if (!hf_layers_views_are_near(c))
         return 1;
     for (int ty = -1; ty <= c->rows; ty++)
         for (int tx = -1; tx <= c->columns; tx++) {
