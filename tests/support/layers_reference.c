@@ -107,7 +107,9 @@ void layers_reference_add(const struct frame *f, const struct slice *s, const st
         for (int x = to->x0 * (1 << apart); x < to->x1 * (1 << apart); x++) {
             double pixel[SAMPLE];
             const double *v = edge(set, x, y);
-            if (kind == SHINE && f->tile && (floor(x / 16.0) != f->tile[0] || floor(y / 16.0) != f->tile[1]))
+            if (kind == SHINE && f->square &&
+                (floor(x / (double)LAYERS_REFERENCE_SQUARE) != f->square[0] ||
+                 floor(y / (double)LAYERS_REFERENCE_SQUARE) != f->square[1]))
                 continue;
             if (quads) {
                 spread(f, set, x, y, pixel);

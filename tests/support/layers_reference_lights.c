@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The highlights of the reference: each tile's are drawn by themselves, times what is left of them.
+// The highlights of the reference: each square's are drawn by themselves, times what is left of them.
 #include "support/layers_reference_parts.h"
 
-enum { TILE = 16, SQUARE = 8 };
+enum { SQUARE = LAYERS_REFERENCE_SQUARE };
 
-// What is bright in a square of a tile: its middle in pixels of the frame, its mean radius, and its light.
+// What is bright in a square: its middle in pixels of the frame, its mean radius, and its light.
 struct lamp {
     double x, y, radius, light;
 };
@@ -63,39 +63,29 @@ static double passed(const struct frame *f, const struct grid *g, const struct s
            (v - j) * ((1 - u + i) * edge(g, i, j + 1)[4] + (u - i) * edge(g, i + 1, j + 1)[4]);
 }
 
-// What is cut from the light of a tile, at half resolution.
-static struct grid cut(const struct frame *f, const struct slice *s, int count, int near, const int tile[2])
+// What is cut from the light of a square, at half resolution.
+static struct grid cut(const struct frame *f, const struct slice *s, int count, int near, const int square[2])
 {
     struct grid out = grid_new(-MARGIN, -MARGIN, (f->width + 1) / 2 + MARGIN, (f->height + 1) / 2 + MARGIN, 1);
-    struct lamp lamp[4];
-    double all = 0;
-    for (int i = 0; i < 4; i++) {
-        lamp[i] = lamp_of(f, near, tile[0] * TILE + i % 2 * SQUARE, tile[1] * TILE + i / 2 * SQUARE);
-        all += lamp[i].light;
-    }
-    for (int k = 0; k < count; k++) {
-        struct grid g = {0};
-        for (int i = 0; i < 4 && layers_reference_level_of(f, s[k].own); i++) {
-            const double before =
-                lamp[i].light > 0 ? (lamp[i].radius - s[k].own) / (2 * apart_at(f, lamp[i].radius)) - 0.5 : 0;
-            if (!(before > 0))
-                continue;
-            g = g.v ? g : coverage(f, &s[k]);
-            for (int y = out.y0; y < out.y1; y++)
-                for (int x = out.x0; x < out.x1; x++)
-                    at(&out, x, y)[0] +=
-                        fmin(before, 1) * lamp[i].light / all * passed(f, &g, &s[k], &lamp[i], 2 * x + 1, 2 * y + 1);
-        }
+    const struct lamp lamp = lamp_of(f, near, square[0] * SQUARE, square[1] * SQUARE);
+    for (int k = 0; k < count && lamp.light > 0; k++) {
+        const double before = (lamp.radius - s[k].own) / (2 * apart_at(f, lamp.radius)) - 0.5;
+        if (!layers_reference_level_of(f, s[k].own) || !(before > 0))
+            continue;
+        struct grid g = coverage(f, &s[k]);
+        for (int y = out.y0; y < out.y1; y++)
+            for (int x = out.x0; x < out.x1; x++)
+                at(&out, x, y)[0] += fmin(before, 1) * passed(f, &g, &s[k], &lamp, 2 * x + 1, 2 * y + 1);
         free(g.v);
     }
     return out;
 }
 
-// Whether a tile has shares of a slice.
-static int has_shares(const struct frame *f, const struct slice *s, const int tile[2])
+// Whether a square has shares of a slice.
+static int has_shares(const struct frame *f, const struct slice *s, const int square[2])
 {
-    for (int i = 0; i < TILE * TILE; i++) {
-        const double *v = edge(&f->seen, tile[0] * TILE + i % TILE, tile[1] * TILE + i / TILE);
+    for (int i = 0; i < SQUARE * SQUARE; i++) {
+        const double *v = edge(&f->seen, square[0] * SQUARE + i % SQUARE, square[1] * SQUARE + i / SQUARE);
         if (v[SHARE] > 0 && layers_reference_part_of(s, v[RADIUS]) > 0)
             return 1;
     }
@@ -106,16 +96,16 @@ static int has_shares(const struct frame *f, const struct slice *s, const int ti
 static void add_radius(const struct frame *f, const struct slice *s, int count, const struct slice *shine,
                        const struct grid *lift, struct grid *light)
 {
-    const int around = (int)(fabs(shine->own) * 2 * fmax(f->wide, 1)) / TILE + 2;
-    for (int ty = -around; ty < (f->height - 1) / TILE + 1 + around; ty++)
-        for (int tx = -around; tx < (f->width - 1) / TILE + 1 + around; tx++) {
-            const int tile[2] = {tx, ty};
+    const int around = (int)(fabs(shine->own) * 2 * fmax(f->wide, 1)) / SQUARE + 2;
+    for (int sy = -around; sy < (f->height - 1) / SQUARE + 1 + around; sy++)
+        for (int sx = -around; sx < (f->width - 1) / SQUARE + 1 + around; sx++) {
+            const int square[2] = {sx, sy};
             struct frame only = *f;
-            if (!has_shares(f, shine, tile))
+            if (!has_shares(f, shine, square))
                 continue;
-            only.tile = tile;
+            only.square = square;
             struct grid sum = layers_reference_draw(&only, shine, 0, SHINE, 0),
-                        less = cut(f, s, count, shine->own < 0, tile);
+                        less = cut(f, s, count, shine->own < 0, square);
             for (int i = 0; i < (less.x1 - less.x0) * (less.y1 - less.y0); i++)
                 less.v[i] = fmin(less.v[i], 1);
             for (int y = 0; y < f->height; y++)

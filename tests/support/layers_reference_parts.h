@@ -42,6 +42,8 @@ static inline double *edge(const struct grid *g, int x, int y)
 enum { WEIGHT = 4, RADIUS, SHARE, SAMPLE };
 // Around the levels' grids, so that upsampling has neighbours.
 enum { MARGIN = 8 };
+// What is bright in a square of so many pixels, on one side of the focus, is one lamp.
+enum { LAYERS_REFERENCE_SQUARE = 8 };
 
 struct slice {
     double before, own, after;
@@ -60,7 +62,7 @@ struct frame {
     double wide, half, quarter, low, high;
     double shift;                             // relative change of the radius behind the focus (chromatic aberration)
     int turned;                               // in front of the focus: the aperture by half a turn
-    const int *tile;                          // column and row of the tile whose shares alone are drawn, or NULL
+    const int *square;                        // column and row of the square whose shares alone are drawn, or NULL
     int plane;                                // channel of a coloured aperture picture
     struct grid seen, mixed, behind, beyond;  // samples
 };

@@ -12,24 +12,18 @@
 #include "pixel/edges.h"
 
 enum {
-    SQUARE = TILE / 2,  // a lamp is what is bright in a square of so many pixels
-    SQUARES = 4,        // of a tile
-    MOST = 256          // tiles with lamps that are looked at together
+    SQUARE = HF_LAYERS_SQUARE,
+    SQUARES = 4,  // of a tile
+    MOST = 256    // lamps that are looked at together
 };
 
+// A lamp is what is bright in a square, and all of it is cut alike.
 struct lamp {
-    float x, y, radius, light;  // x, y: in pixels from its tile's corner, so that no cell rounds them otherwise
-    float reach;                // how far its disc goes
-};
-
-// A tile with lamps, and what is cut from their discs.
-struct lamps {
-    int tx, ty, count;
-    struct lamp lamp[SQUARES];
-    struct hf_layers_cut cut;  // `tiles`: those that their discs reach
-    float *first;              // of what is cut
-    float light;
-    int any;  // whether something is
+    struct hf_layers_square of;
+    float x, y, radius;        // x, y: in pixels from its tile's corner, so that no cell rounds them otherwise
+    float reach;               // how far its disc goes
+    struct hf_layers_cut cut;  // `tiles`: those that its disc reaches
+    int any;                   // whether something is cut
 };
 
 // The coverage of a slice, around the cell.
@@ -141,13 +135,14 @@ static float reach_of(const struct hf_layers *l, float radius, float size)
     return r * (1 + fabsf(l->chromatic)) * (l->key.picture ? 1.42f : 1) + 1.42f * size + 3;
 }
 
-// What is bright in a square of the frame, as far as it lies on the stack's side of the focus. Returns 0 if nothing is.
-static int find_lamp(const struct hf_cell *c, int stack, int x0, int y0, struct lamp *lamp)
+// What is bright in a square of the frame, as far as it lies on the stack's side of the focus; (x0, y0) is its first sample.
+// Returns 0 if nothing is.
+static int find_bright(const struct hf_cell *c, int stack, int x0, int y0, struct lamp *lamp)
 {
     const struct hf_layers_set *s = &c->samples->seen;
     static const float none[SQUARE] = {0};
-    struct lamp sum = {0};
-    float most = 0;
+    struct hf_layers_range radii = {HUGE_VALF, -HUGE_VALF};
+    float sum_x = 0, sum_y = 0, sum_radius = 0, all = 0;
     int left = SQUARE, right = 0, top = SQUARE, low = 0;
     for (int y = 0; y < SQUARE; y++) {
         const float *shares = c->samples->share + (y0 + y) * s->stride + x0;
@@ -160,22 +155,25 @@ static int find_lamp(const struct hf_cell *c, int stack, int x0, int y0, struct 
                 continue;
             // Less than the largest float, whatever is summed up.
             const float light = share * (s->colour[0][at] + s->colour[1][at] + s->colour[2][at]) * 0x1p-20f;
-            sum.x += light * (float)x;
-            sum.y += light * (float)y;
-            sum.radius += light * r;
-            sum.light += light;
-            most = hf_larger(fabsf(r), most);
+            sum_x += light * (float)x;
+            sum_y += light * (float)y;
+            sum_radius += light * r;
+            all += light;
+            radii = (struct hf_layers_range){r < radii.low ? r : radii.low, hf_larger(r, radii.high)};
             left = hf_min(x, left);
             right = hf_max(x, right);
             top = hf_min(y, top);
             low = y;
         }
     }
-    if (!(sum.light > 0))
+    if (!(all > 0))
         return 0;
-    const float one = 1 / sum.light;
-    *lamp = (struct lamp){sum.x * one + 0.5f, sum.y * one + 0.5f, sum.radius * one, sum.light,
-                          reach_of(c->l, most, (float)(hf_max(right - left, low - top) + 1))};
+    const float one = 1 / all, most = hf_larger(fabsf(radii.low), fabsf(radii.high));
+    *lamp = (struct lamp){.x = sum_x * one + 0.5f,
+                          .y = sum_y * one + 0.5f,
+                          .radius = sum_radius * one,
+                          .reach = reach_of(c->l, most, (float)(hf_max(right - left, low - top) + 1)),
+                          .of.radii = radii};
     return 1;
 }
 
@@ -184,31 +182,27 @@ static int tile_of(float x)
     return (int)floorf(x * (1.0f / TILE));
 }
 
-// The lamps of a tile. Returns 0 if it has none whose discs reach the cell.
-static int find_lamps(const struct hf_cell *c, int stack, int tx, int ty, struct lamps *to)
+// The lamp of a square of tile (tx, ty). Returns 0 if there is none whose disc reaches the cell.
+static int find_lamp(const struct hf_cell *c, int stack, int tx, int ty, int square, struct lamp *p)
 {
     const struct hf_rect around = hf_layers_tiles_with_samples(c);
-    const int x0 = c->x0 + hf_layers_within(tx, around.x0, around.x1) * TILE,
-              y0 = c->y0 + hf_layers_within(ty, around.y0, around.y1) * TILE;
-    *to = (struct lamps){.tx = tx, .ty = ty, .cut.tiles = {c->columns, c->rows, 0, 0}};
-    for (int i = 0; i < SQUARES; i++) {
-        struct lamp *p = &to->lamp[to->count];
-        const int dx = i % 2 * SQUARE, dy = i / 2 * SQUARE;
-        if (!find_lamp(c, stack, x0 + dx, y0 + dy, p))
-            continue;
-        p->x += (float)dx;
-        p->y += (float)dy;
-        const float high = p->reach + 1, wide = high * hf_larger(c->l->wide, 1), x = p->x + (float)(tx * TILE),
-                    y = p->y + (float)(ty * TILE);
-        struct hf_rect *r = &to->cut.tiles;
-        *r = (struct hf_rect){hf_max(hf_min(tile_of(x - wide), r->x0), 0), hf_max(hf_min(tile_of(y - high), r->y0), 0),
-                              hf_min(hf_max(tile_of(x + wide) + 1, r->x1), c->columns),
-                              hf_min(hf_max(tile_of(y + high) + 1, r->y1), c->rows)};
-        to->light += p->light;
-        to->count++;
-    }
-    to->cut.row = (to->cut.tiles.x1 - to->cut.tiles.x0) * TILE / 2 + 2;
-    return to->count && to->cut.tiles.x0 < to->cut.tiles.x1 && to->cut.tiles.y0 < to->cut.tiles.y1;
+    const int dx = square % 2 * SQUARE, dy = square / 2 * SQUARE;
+    if (!find_bright(c, stack, c->x0 + hf_layers_within(tx, around.x0, around.x1) * TILE + dx,
+                     c->y0 + hf_layers_within(ty, around.y0, around.y1) * TILE + dy, p))
+        return 0;
+    p->of.tx = tx;
+    p->of.ty = ty;
+    p->of.dx = dx;
+    p->of.dy = dy;
+    p->x += (float)dx;
+    p->y += (float)dy;
+    const float high = p->reach + 1, wide = high * hf_larger(c->l->wide, 1), x = p->x + (float)(tx * TILE),
+                y = p->y + (float)(ty * TILE);
+    const struct hf_rect r = {hf_max(tile_of(x - wide), 0), hf_max(tile_of(y - high), 0),
+                              hf_min(tile_of(x + wide) + 1, c->columns), hf_min(tile_of(y + high) + 1, c->rows)};
+    p->cut.tiles = r;
+    p->cut.row = (r.x1 - r.x0) * TILE / 2 + 2;
+    return r.x0 < r.x1 && r.y0 < r.y1;
 }
 
 // How far a slice lies before a lamp: not at all if they may belong to one surface.
@@ -297,58 +291,53 @@ static int cut_row(const struct passing *w, int x0, int x1, int y, float *out)
     return w->passed(&r, x1 - x0, out + x0);
 }
 
-// Add what a slice cuts from the discs of a tile's lamps.
-static void cut_lamps(const struct hf_cell *c, const struct cover *by, const struct hf_slice *s, struct lamps *t)
+// Add what a slice cuts from the disc of a lamp.
+static void cut_lamp(const struct hf_cell *c, const struct cover *by, const struct hf_slice *s, struct lamp *p)
 {
-    const int size = TILE / 2, step = TILE >> s->level;
-    const struct hf_rect r = {(t->cut.tiles.x0 - t->tx) * size - 1, (t->cut.tiles.y0 - t->ty) * size - 1,
-                              (t->cut.tiles.x1 - t->tx) * size + 1, (t->cut.tiles.y1 - t->ty) * size + 1};
-    for (int i = 0; i < t->count; i++) {
-        const struct lamp *p = &t->lamp[i];
-        const float radius = fabsf(s->radius);
-        const struct passing w = {.lamp = p,
-                                  .part = s->radius / p->radius,
-                                  .wide = radius * c->l->wide,
-                                  .high = radius,
-                                  .size = 1 / (float)(1 << s->level),
-                                  .much = is_before(c->l, p, s) * (p->light / t->light),
-                                  .passed = c->k->passed,
-                                  .line = c->line[0],
-                                  .by = by,
-                                  .x0 = (by->tiles.x0 - t->tx) * step,
-                                  .y0 = (by->tiles.y0 - t->ty) * step};
-        for (int y = r.y0; w.much > 0 && y < r.y1; y++) {
-            const float dy = 2 * (float)y + 1 - p->y, square = p->reach * p->reach - dy * dy,
-                        half = square > 0 ? sqrtf(square) * hf_larger(c->l->wide, 1) : 0;
-            const int x0 = hf_max((int)floorf((p->x - half) / 2), r.x0),
-                      x1 = hf_min((int)ceilf((p->x + half) / 2), r.x1);
-            if (x0 < x1 && half > 0)
-                t->any |= cut_row(&w, x0, x1, y, t->cut.at + (t->ty * size + y) * t->cut.row + t->tx * size);
-        }
+    const int size = TILE / 2, step = TILE >> s->level, tx = p->of.tx, ty = p->of.ty;
+    const struct hf_rect r = {(p->cut.tiles.x0 - tx) * size - 1, (p->cut.tiles.y0 - ty) * size - 1,
+                              (p->cut.tiles.x1 - tx) * size + 1, (p->cut.tiles.y1 - ty) * size + 1};
+    const float radius = fabsf(s->radius);
+    const struct passing w = {.lamp = p,
+                              .part = s->radius / p->radius,
+                              .wide = radius * c->l->wide,
+                              .high = radius,
+                              .size = 1 / (float)(1 << s->level),
+                              .much = is_before(c->l, p, s),
+                              .passed = c->k->passed,
+                              .line = c->line[0],
+                              .by = by,
+                              .x0 = (by->tiles.x0 - tx) * step,
+                              .y0 = (by->tiles.y0 - ty) * step};
+    for (int y = r.y0; w.much > 0 && y < r.y1; y++) {
+        const float dy = 2 * (float)y + 1 - p->y, square = p->reach * p->reach - dy * dy,
+                    half = square > 0 ? sqrtf(square) * hf_larger(c->l->wide, 1) : 0;
+        const int x0 = hf_max((int)floorf((p->x - half) / 2), r.x0), x1 = hf_min((int)ceilf((p->x + half) / 2), r.x1);
+        if (x0 < x1 && half > 0)
+            p->any |= cut_row(&w, x0, x1, y, p->cut.at + (ty * size + y) * p->cut.row + tx * size);
     }
 }
 
-static size_t floats_of(const struct lamps *t)
+static size_t floats_of(const struct lamp *p)
 {
-    return (size_t)t->cut.row * (size_t)((t->cut.tiles.y1 - t->cut.tiles.y0) * TILE / 2 + 2);
+    return (size_t)p->cut.row * (size_t)((p->cut.tiles.y1 - p->cut.tiles.y0) * TILE / 2 + 2);
 }
 
 // The tiles of the cell that discs of lamps behind a slice reach.
-static struct hf_rect reached_behind(const struct hf_cell *c, const struct hf_slice *s, const struct lamps *t,
+static struct hf_rect reached_behind(const struct hf_cell *c, const struct hf_slice *s, const struct lamp *lamp,
                                      int count)
 {
     struct hf_rect r = {c->columns, c->rows, 0, 0};
-    for (int k = 0; k < count; k++)
-        for (int i = 0; i < t[k].count; i++)
-            if (is_before(c->l, &t[k].lamp[i], s) > 0) {
-                const struct hf_rect a = t[k].cut.tiles;
-                r = (struct hf_rect){hf_min(r.x0, a.x0), hf_min(r.y0, a.y0), hf_max(r.x1, a.x1), hf_max(r.y1, a.y1)};
-            }
+    for (int i = 0; i < count; i++)
+        if (is_before(c->l, &lamp[i], s) > 0) {
+            const struct hf_rect a = lamp[i].cut.tiles;
+            r = (struct hf_rect){hf_min(r.x0, a.x0), hf_min(r.y0, a.y0), hf_max(r.x1, a.x1), hf_max(r.y1, a.y1)};
+        }
     return r;
 }
 
-// Look at tiles with lamps, and cut their discs.
-static void cut_tiles(struct hf_cell *c, int stack, struct lamps *t, int count)
+// Look at lamps, and cut their discs.
+static void cut_discs(struct hf_cell *c, int stack, struct lamp *lamp, int count)
 {
     const struct hf_layers *l = c->l;
     for (int i = 0; count && i < l->slices && !hf_stopped(l->stop); i++) {
@@ -356,18 +345,18 @@ static void cut_tiles(struct hf_cell *c, int stack, struct lamps *t, int count)
         struct cover p;
         if (s->level == 0)
             continue;
-        const struct hf_rect r = reached_behind(c, s, t, count);
+        const struct hf_rect r = reached_behind(c, s, lamp, count);
         if (r.x0 >= r.x1 || r.y0 >= r.y1)
             continue;
         shape_cover(c, s, r, &p);
         int any = take_weights(c, i, HF_KIND_SEEN, &p, 0);
         any = l->levels ? take_weights(c, i, HF_KIND_HIDDEN, &p, any) : any;
         for (int k = 0; any && k < count; k++)
-            cut_lamps(c, &p, s, &t[k]);
+            cut_lamp(c, &p, s, &lamp[k]);
     }
     for (int k = 0; k < count; k++)
-        if (t[k].any)
-            hf_layers_cut_light(c, stack, t[k].tx, t[k].ty, &t[k].cut);
+        if (lamp[k].any)
+            hf_layers_cut_light(c, stack, &lamp[k].of, &lamp[k].cut);
 }
 
 size_t hf_layers_cut_floats(const struct hf_cell *c)
@@ -376,31 +365,32 @@ size_t hf_layers_cut_floats(const struct hf_cell *c)
                                 : 0;
 }
 
-// Look at all tiles with lamps, as many at once as there is room for.
+// Look at all lamps, as many at once as there is room for.
 void hf_layers_cut_lamps(struct hf_cell *c, int stack)
 {
     const struct hf_layers *l = c->l;
     const int n = l->most_tiles;
     const size_t room = hf_layers_cut_floats(c) - HF_PAD;
-    struct lamps tile[MOST];
+    struct lamp lamp[MOST];
     int count = 0;
     size_t used = 0;
     for (int ty = -n; ty < c->rows + n && !hf_stopped(l->stop); ty++)
-        for (int tx = -n; tx < c->columns + n; tx++) {
-            struct lamps t;
-            if (*hf_layers_map_at(&c->plain, tx, ty) & DULL || !find_lamps(c, stack, tx, ty, &t))
+        for (int i = 0; i < (c->columns + 2 * n) * SQUARES; i++) {
+            const int tx = i / SQUARES - n;
+            struct lamp p;
+            if (*hf_layers_map_at(&c->plain, tx, ty) & DULL || !find_lamp(c, stack, tx, ty, i % SQUARES, &p))
                 continue;
-            const size_t need = floats_of(&t);
+            const size_t need = floats_of(&p);
             if (count == MOST || used + need > room) {
-                cut_tiles(c, stack, tile, count);
+                cut_discs(c, stack, lamp, count);
                 used = 0;
                 count = 0;
             }
-            t.first = c->cut_off + used;
-            t.cut.at = t.first - (t.cut.tiles.y0 * TILE / 2 - 1) * t.cut.row - (t.cut.tiles.x0 * TILE / 2 - 1);
-            memset(t.first, 0, sizeof(float) * need);
-            tile[count++] = t;
+            float *first = c->cut_off + used;
+            p.cut.at = first - (p.cut.tiles.y0 * TILE / 2 - 1) * p.cut.row - (p.cut.tiles.x0 * TILE / 2 - 1);
+            memset(first, 0, sizeof(float) * need);
+            lamp[count++] = p;
             used += need;
         }
-    cut_tiles(c, stack, tile, count);
+    cut_discs(c, stack, lamp, count);
 }

@@ -164,6 +164,18 @@ static void drop_tile(const struct hf_cell *c, const struct hf_build *b, int lik
         memset(source_at(c, i, like * size, y), 0, sizeof(float) * (size_t)n);
 }
 
+// Clear what of row y of a square's tile is not in the square.
+static void keep_square(const struct hf_cell *c, const struct hf_build *b, int y)
+{
+    const struct hf_layers_square *s = b->square;
+    const int apart = TILE - HF_LAYERS_SQUARE, inside = y >= s->dy && y < s->dy + HF_LAYERS_SQUARE;
+    for (int i = b->first; i < b->channels; i++)
+        if (inside)
+            memset(source_at(c, i, s->tx * TILE + apart - s->dx, y), 0, sizeof(float) * HF_LAYERS_SQUARE);
+        else
+            memset(source_at(c, i, s->tx * TILE, y), 0, sizeof(float) * TILE);
+}
+
 static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty, int from, int y0, int y1)
 {
     const int size = TILE >> b->s->level;
@@ -182,6 +194,8 @@ static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty,
             repeat_tile(c, b, last, hf_max(last + 1, tx), end, y);
             if (beyond)
                 drop_tile(c, b, first, tx, y);
+            if (b->square)
+                keep_square(c, b, y);
         }
     }
 }

@@ -5,13 +5,14 @@
 
 #include "engine/layers/parts.h"
 
-// Draw the shares of one radius in the used tiles at full resolution.
-static void draw(const struct hf_cell *c, int number)
+// Draw the shares of one radius in the used tiles, or in a square of the only one, at full resolution.
+static void draw(const struct hf_cell *c, int number, const struct hf_layers_square *square)
 {
     const struct hf_build b = {.s = &c->l->shine[number],
                                .set = &c->samples->seen,
                                .weight = c->samples->share,
-                               .channels = c->l->channels + 1};
+                               .channels = c->l->channels + 1,
+                               .square = square};
     hf_layers_clear_tiles(c, &c->shone, &c->shine, 0, 0, b.channels);
     hf_layers_draw_slice(c, &b, &c->shine);
 }
@@ -75,13 +76,13 @@ static void add_light(struct hf_cell *c, int stack, int number, const struct hf_
         }
 }
 
-void hf_layers_cut_light(struct hf_cell *c, int stack, int tx, int ty, const struct hf_layers_cut *t)
+void hf_layers_cut_light(struct hf_cell *c, int stack, const struct hf_layers_square *of, const struct hf_layers_cut *t)
 {
     const struct hf_layers *l = c->l;
     for (int i = 0; i < l->shines && !hf_stopped(l->stop); i++)
-        if (is_of(l, stack, i) && hf_layers_use_tile(c, tx, ty, i) &&
-            hf_layers_mark_touched(c, &l->shine[i], &c->shone)) {
-            draw(c, i);
+        if (is_of(l, stack, i) && l->shine[i].before < of->radii.high && of->radii.low < l->shine[i].after &&
+            hf_layers_use_tile(c, of->tx, of->ty, i) && hf_layers_mark_touched(c, &l->shine[i], &c->shone)) {
+            draw(c, i, of);
             add_light(c, stack, i, t);
         }
 }
@@ -93,7 +94,7 @@ void hf_layers_draw_lights(struct hf_cell *c, int stack)
     for (int i = 0; l->set.highlights && i < l->shines && !hf_stopped(l->stop); i++)
         if (is_of(l, stack, i) && hf_layers_mark_used(c, i, HF_KIND_SHARES) &&
             hf_layers_mark_touched(c, &l->shine[i], &c->shone)) {
-            draw(c, i);
+            draw(c, i, NULL);
             begin_light(c, stack);
             add_light(c, stack, i, NULL);
             any = 1;

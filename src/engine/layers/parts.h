@@ -80,15 +80,24 @@ struct hf_span {
     int x0, x1, tx;  // tx: the tile from which to look for the next span; -1 at first
 };
 
+// A square of a tile. What is bright in it, on one side of the focus, is one lamp.
+enum { HF_LAYERS_SQUARE = TILE / 2 };
+
+struct hf_layers_square {
+    int tx, ty, dx, dy;            // its tile, and where it lies in it
+    struct hf_layers_range radii;  // of its lamp
+};
+
 struct hf_build {
     const struct hf_slice *s;
     const struct hf_layers_set *set;
     const float *weight, *share;
     int finest;  // log2 of the pixel size of its samples
     int channels;
-    const struct hf_layers_set *more;  // samples behind those of `set`, or NULL
-    int spread;                        // each pixel of a quad gets the quad's sample
-    int first;                         // index of the first channel that is drawn
+    const struct hf_layers_set *more;       // samples behind those of `set`, or NULL
+    int spread;                             // each pixel of a quad gets the quad's sample
+    int first;                              // index of the first channel that is drawn
+    const struct hf_layers_square *square;  // what of its tile is drawn, or NULL: all
 };
 
 // The number from `first` to `last` that is nearest to i.
@@ -195,15 +204,16 @@ size_t hf_layers_cut_floats(const struct hf_cell *c);
 void hf_layers_cut_lamps(struct hf_cell *c, int stack);
 
 // lights.c
-// For each pixel of some tiles of a cell at half resolution, and one more on every side: the part of the light of one tile's
-// lamps that is cut there.
+// For each pixel of some tiles of a cell at half resolution, and one more on every side: the part of a lamp's light that is cut
+// there.
 struct hf_layers_cut {
     struct hf_rect tiles;
     float *at;  // where the cell's first pixel would be
     ptrdiff_t row;
 };
-// Subtract what is cut from the light of the lamps of tile (tx, ty).
-void hf_layers_cut_light(struct hf_cell *c, int stack, int tx, int ty, const struct hf_layers_cut *t);
+// Subtract what is cut from the light of a square's lamp.
+void hf_layers_cut_light(struct hf_cell *c, int stack, const struct hf_layers_square *of,
+                         const struct hf_layers_cut *t);
 // Draw the highlights on one side of the focus, NEAR or FAR, with their coverage, as they shine through all that is in front of
 // them but the middle stack. Call for FAR after the last slice.
 void hf_layers_draw_lights(struct hf_cell *c, int stack);
