@@ -184,6 +184,40 @@ static void beside_bar(struct hf_context *c, double light, enum hf_layers_qualit
         picture_free(made[i]);
 }
 
+// A hair in focus, less than a pixel wide, runs across a lamp. The rim of the lamp's disc is as sharp as without the hair: two
+// pixels outside, where half-resolution pixels would still show, each of the lamp's pixels leaves at most what is no
+// highlight: twice the wall's light, and a thousandth of it for each pixel of the disc (highlights.c).
+static void behind_hair(struct hf_context *c, double light)
+{
+    enum { SHARP = 11 };
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radius = picture_new(WIDTH, HEIGHT, 1);
+    const struct lamps l = {.x = {50.3, -1000, -1000}, .y = {48.2, 0, 0}, .light = light};
+    struct hf_params p = scene_params();
+    int pixels = 0;
+    for (int k = 0; k < WIDTH * HEIGHT; k++) {
+        const double x = k % WIDTH, y = k / WIDTH, hair = 50.2 + 0.1 * (y - 48),
+                     cover = fmin(fmax(0.8 - fabs(x - hair), 0), 0.6);
+        const double seen = pixel(&l, (int)x, (int)y, 0);
+        pixels += hypot(x + 0.5 - l.x[0], y + 0.5 - l.y[0]) < SIZE + 1;
+        radius.plane[0][k] = cover > 0.5 ? 0 : SHARP;
+        for (int i = 0; i < 3; i++)
+            colour.plane[i][k] = (float)(cover * BOX + (1 - cover) * seen);
+    }
+    p.engine = HF_ENGINE_LAYERS;
+    p.max_radius = HF_DERIVE;
+    const struct hf_depth depth = picture_radii(&radius);
+    struct picture out = render(c, &colour, &depth, &p);
+    const double disc = PI * SHARP * SHARP, bound = pixels * WALL * (2 + 0.001 * disc) / disc;
+    double most = 0;
+    for (int k = 0; k < WIDTH * HEIGHT; k++)
+        if (hypot(k % WIDTH + 0.5 - l.x[0], k / WIDTH + 0.5 - l.y[0]) > SHARP + SIZE + 2)
+            most = fmax(most, out.plane[1][k] - WALL);
+    CHECK_MSG(most <= bound, "light %g: %g outside of the disc, at most %g", light, most, bound);
+    picture_free(&out);
+    picture_free(&colour);
+    picture_free(&radius);
+}
+
 int main(void)
 {
     static const double lights[] = {1.5, 30, 1000, 1e4};
@@ -196,6 +230,8 @@ int main(void)
     for (int quality = HF_LAYERS_STANDARD; quality <= HF_LAYERS_BEST; quality++)
         for (int i = 1; i < 4 && quality != HF_LAYERS_DRAFT; i++)  // a draft has no hidden samples
             beside_bar(c, lights[i], (enum hf_layers_quality)quality);
+    for (int i = 1; i < 4; i++)
+        behind_hair(c, lights[i]);
     hf_close(&c);
     return check_report();
 }

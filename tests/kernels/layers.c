@@ -65,6 +65,37 @@ static void unmix_call(struct world *w, const struct kernels *k, enum arena a)
                 u.mixed[c][x] = 0;
 }
 
+// Two sets of samples, which may change places, and means. Some tiles have no mixed pixels.
+static void shares_make(struct world *w)
+{
+    fill_set(w, IN, 0, w->n);
+    fill_set(w, IN + 6, 0, w->n);
+    for (int x = 0; x < w->n; x++)
+        if (rng_one_in(&w->rng, 2) || (now.rows >> x / 16 % 3 & 1))
+            line(w, ARENA_MADE, IN + 10)[x] = 0;
+    for (int i = 0; i < 3; i++)
+        for (int x = 0; x < w->n; x++)
+            line(w, ARENA_MADE, i)[x] = rng_float(&w->rng, 0, 0.5f);
+    for (int i = 0; i < 13; i++)
+        put(w, IN + i, w->n, 32);
+}
+
+static void shares_call(struct world *w, const struct kernels *k, enum arena a, int alpha)
+{
+    const float *in[3] = {line(w, a, 0), line(w, a, 1), line(w, a, 2)};
+    float *seen[6], *mixed[6], *const out = line(w, a, IN + 12);
+    uint8_t any[17] = {0}, mixes[17];
+    for (int i = 0; i < 17; i++)
+        mixes[i] = (uint8_t) !(now.rows >> i % 3 & 1);
+    set_of(w, a, IN, seen);
+    set_of(w, a, IN + 6, mixed);
+    if (!alpha)
+        seen[3] = mixed[3] = NULL;
+    k->layers.shares(seen, mixed, mixes, (const float *const[]){in[0], in[1], in[2], in[0] + 1, in[1] + 1},
+                     alpha ? (const float *const[]){in[2], in[0], in[1], in[2] + 1, in[0] + 1} : NULL, w->n, out, any);
+    w->result[a].returned = unmarked(any, out, w->n);
+}
+
 static void quads_call(const struct world *w, const struct kernels *k, enum arena a)
 {
     float *set[4][6], *out[6];
@@ -251,11 +282,7 @@ void layers_make(struct world *w, int which)
         return;
     case LAYERS_SHARES:
     case LAYERS_SHARES_ALPHA:
-        fill_set(w, 0, 0, w->n);
-        for (int i = 6; i < 9; i++)
-            for (int x = 0; x < w->n; x++)
-                line(w, ARENA_MADE, i)[x] = rng_float(&w->rng, 0, 0.5f);
-        put(w, IN, w->n, 32);
+        shares_make(w);
         return;
     case LAYERS_LAMPS:
     case LAYERS_LAMPS_ALPHA:
@@ -435,7 +462,6 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
     const struct hf_layers_kernels *s = &k->layers;
     const float *in[9];
     float *const out = line(w, a, IN);
-    uint8_t any[17] = {0};
     for (int i = 0; i < 9; i++)
         in[i] = line(w, a, i);
     switch (which) {
@@ -450,11 +476,7 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         return;
     case LAYERS_SHARES:
     case LAYERS_SHARES_ALPHA:
-        s->shares(in, (const float *const[]){in[6], in[7], in[8], in[6] + 1, in[7] + 1},
-                  which == LAYERS_SHARES_ALPHA ? (const float *const[]){in[8], in[6], in[7], in[8] + 1, in[6] + 1}
-                                               : NULL,
-                  w->n, out, any);
-        w->result[a].returned = unmarked(any, out, w->n);
+        shares_call(w, k, a, which == LAYERS_SHARES_ALPHA);
         return;
     case LAYERS_LAMPS:
     case LAYERS_LAMPS_ALPHA:

@@ -204,17 +204,33 @@ static double bright_mean(const struct frame *f, int from, int to, int x, int y)
     return mean;
 }
 
-static void highlight(struct frame *f, int x, int y)
+// How much of a sample's light is no highlight.
+static double plain_part(const struct frame *f, const double *s, int x, int y)
 {
     static const int side[5][2] = {{0, 0}, {-18, 0}, {18, 0}, {0, -18}, {0, 18}};
-    double *s = at(&f->seen, x, y), mean = INFINITY, light = s[0] + s[1] + s[2];
+    double mean = INFINITY, light = s[0] + s[1] + s[2];
     for (int i = 0; i < 5; i++) {
         const int px = (x & ~1) + side[i][0], py = (y & ~1) + side[i][1];
         const double open = f->channels == 4 ? 1 - bright_mean(f, 3, 4, px, py) : 0;
         mean = fmin(mean, (i ? 3 : 1) * bright_mean(f, 0, 3, px, py) + open * root(fmax(light, 0)));
     }
     const double cap = mean * mean * (2 + 0.001 * PI * s[RADIUS] * s[RADIUS]);
-    s[SHARE] = fabs(s[RADIUS]) > 4 && light > cap ? s[WEIGHT] * (1 - cap / light) : 0;
+    return fabs(s[RADIUS]) > 4 && light > cap ? cap / light : 1;
+}
+
+// Of a mixed pixel's samples the brighter highlight is shown, less what the other one has. From here on that is `seen`, whether
+// it is in front or not. What is behind counts from four times its cap on.
+static void highlight(struct frame *f, int x, int y)
+{
+    double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), part = plain_part(f, seen, x, y), other = 1;
+    if (mixed[WEIGHT] > 0)
+        other = fmin(4 * plain_part(f, mixed, x, y), 1);
+    for (int i = 0; i < SAMPLE && other < part; i++) {
+        const double kept = seen[i];
+        seen[i] = mixed[i];
+        mixed[i] = kept;
+    }
+    seen[SHARE] = seen[WEIGHT] * (1 - fmin(part, other) / fmax(part, other));
 }
 
 // ---- hidden samples ----
@@ -566,7 +582,7 @@ void layers_reference_samples(struct frame *f)
     f->mixed = grid_new(0, 0, f->width, f->height, SAMPLE);
     for (int i = 0; i < f->width * f->height; i++)
         unmix(f, i % f->width, i / f->width);
+    find_hidden(f);
     for (int i = 0; i < f->width * f->height && f->highlights; i++)
         highlight(f, i % f->width, i / f->width);
-    find_hidden(f);
 }

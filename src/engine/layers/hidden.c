@@ -186,11 +186,13 @@ void hf_layers_quad_rows(const struct hf_frame *f, int x, int y, const float *ra
     }
 }
 
-// From which radius on a pixel in row `row` of a quad hides.
+// From which radius on a pixel in row `row` of a quad hides. The nearer of its samples is the front.
 static float hides_from(const float *const radius[4], const float *const weight[4], int row, int at)
 {
-    const float front = radius[row][at], some = weight[row][at] * HF_LAYERS_THIN;
-    return some < 1 && weight[2 + row][at] > 0 ? some * (front - radius[2 + row][at]) + radius[2 + row][at] : front;
+    const int two = weight[2 + row][at] > 0, swapped = two && radius[2 + row][at] < radius[row][at];
+    const float front = radius[swapped ? 2 + row : row][at], back = radius[swapped ? row : 2 + row][at];
+    const float some = weight[swapped ? 2 + row : row][at] * HF_LAYERS_THIN;
+    return two && some < 1 ? some * (front - back) + back : front;
 }
 
 void hf_layers_nearest_c(const float *const radius[4], const float *const weight[4], int n, float *out)

@@ -244,16 +244,18 @@ static void layers_between_simd(const struct hf_hidden_line *line, int steps, co
     HF_WITH_CHANNELS(channels, layers_between_of(line, steps, in, CHANNELS, nearest, n, sum));
 }
 
-// hides_from() of hidden.c. Thin fronts are rare.
+// hides_from() of hidden.c. Thin fronts are rare, and so are pixels whose samples have changed places, which have two.
 HF_INLINE vf layers_hides_from(const float *const radius[4], const float *const weight[4], int row, int at)
 {
-    const vf front = vf_load(radius[row] + at), some = vf_mul(vf_load(weight[row] + at), vf_set1(HF_LAYERS_THIN));
-    vm thin = vf_lt(some, vf_set1(1));
-    if (!vm_any(thin))
-        return front;
-    thin = vm_and(thin, vf_gt(vf_load(weight[2 + row] + at), vf_zero()));
-    const vf back = vf_keep(thin, vf_load(radius[2 + row] + at));
-    return vf_select(thin, vf_fma(some, vf_sub(front, back), back), front);
+    const vf one = vf_set1(1), thin = vf_set1(HF_LAYERS_THIN), own = vf_load(radius[row] + at);
+    const vf weight_of[2] = {vf_load(weight[row] + at), vf_load(weight[2 + row] + at)};
+    const vm two = vf_gt(weight_of[1], vf_zero());
+    if (!vm_any(two))
+        return own;
+    const vf other = vf_select(two, vf_load(radius[2 + row] + at), own), front = vf_min(own, other);
+    const vf some = vf_mul(vf_select(vf_lt(other, own), weight_of[1], weight_of[0]), thin);
+    return vf_select(vm_and(two, vf_lt(some, one)), vf_fma(some, vf_sub(front, vf_max(own, other)), vf_max(own, other)),
+                     front);
 }
 
 static void layers_nearest_simd(const float *const radius[4], const float *const weight[4], int n, float *out)

@@ -5,6 +5,10 @@
 // darkest of five means: around the sample, and next to it on four sides. A disc's rim lies before those, and a lamp of
 // several pixels must not hide itself in its own mean. Where a mean's pixels are transparent they count as bright as
 // the sample: alpha has no shares, so it could not follow the colour there.
+//
+// A pixel has one share, its visible sample's. Behind a thin hair a lamp is the back of a mixed pixel; where that is the
+// brighter highlight, the pixel's two samples change places. Slices treat both alike. What asks later which of them is in
+// front looks at their radii.
 #include "engine/layers/highlights.h"
 
 #include <math.h>
@@ -47,21 +51,46 @@ void hf_layers_nine_c(const float *const in[9], int n, float *out)
     }
 }
 
-void hf_layers_shares_c(const float *const in[6], const float *const around[5], const float *const covered[5], int n,
-                        float *out, uint8_t *any)
+// How much of a sample's light lies below its cap; 1 if it is no highlight.
+static float below_cap(const float *const in[6], const float *const around[5], const float *const covered[5], int x)
+{
+    const float r = in[5][x], light = in[0][x] + in[1][x] + in[2][x];
+    float m = HUGE_VALF;
+    for (int i = 0; i < 5; i++) {
+        const float at = i ? around[i][x / 2] * HF_LAYERS_BESIDE : around[i][x / 2];
+        const float v = covered ? at + (1 - covered[i][x / 2]) * root(light) : at;
+        m = v < m ? v : m;
+    }
+    const float cap = (m * m) * (PLAIN + (r * r) * (LEAST * 3.14159265f));
+    return fabsf(r) > HF_LAYERS_FINE && light > cap ? cap / light : 1;
+}
+
+static void change_places(float *const seen[6], float *const mixed[6], int x)
+{
+    for (int i = 0; i < 6; i++)
+        if (seen[i]) {
+            const float of = seen[i][x];
+            seen[i][x] = mixed[i][x];
+            mixed[i][x] = of;
+        }
+}
+
+// What changes places has no share at that moment, or there would be a jump: the brighter sample's part below its cap is
+// divided by the other's.
+void hf_layers_shares_c(float *const seen[6], float *const mixed[6], const uint8_t *mixes, const float *const around[5],
+                        const float *const covered[5], int n, float *out, uint8_t *any)
 {
     for (int x = 0; x < n; x++) {
-        const float r = in[5][x], light = in[0][x] + in[1][x] + in[2][x];
-        float m = HUGE_VALF;
-        for (int i = 0; i < 5; i++) {
-            const float at = i ? around[i][x / 2] * HF_LAYERS_BESIDE : around[i][x / 2];
-            const float v = covered ? at + (1 - covered[i][x / 2]) * root(light) : at;
-            m = v < m ? v : m;
+        float part = below_cap((const float *const *)seen, around, covered, x);
+        if (mixes[x / 16] && mixed[4][x] > 0) {
+            const float all = below_cap((const float *const *)mixed, around, covered, x) * HF_LAYERS_BEHIND;
+            const float other = all < 1 ? all : 1;
+            if (other < part)
+                change_places(seen, mixed, x);
+            part = part < other ? part / other : other / part;
         }
-        const float cap = (m * m) * (PLAIN + (r * r) * (LEAST * 3.14159265f));
-        const int bright = fabsf(r) > HF_LAYERS_FINE && light > cap;
-        out[x] = bright ? in[4][x] * (1 - cap / light) : 0;
-        any[x / 16] |= (uint8_t)bright;
+        out[x] = part < 1 ? seen[4][x] * (1 - part) : 0;
+        any[x / 16] |= (uint8_t)(part < 1);
     }
 }
 
@@ -191,22 +220,25 @@ void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct
 }
 
 void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch,
-                          uint8_t *any)
+                          const struct hf_layers_any *any)
 {
-    const int n = hf_min(2 * cell.x1, f->s->width) - 2 * cell.x0, channels = hf_layers(f->s)->channels;
+    const int x0 = 2 * cell.x0, n = hf_min(2 * cell.x1, f->s->width) - x0, channels = hf_layers(f->s)->channels;
     const ptrdiff_t stride = stride_of(cell), apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
     const float *mean = scratch + APART * stride + PAD, *cover = mean + cover_from(cell);
     for (int py = 2 * rows.y0; py < hf_min(2 * rows.y1, f->s->height) && !hf_stopped(f->s->stop); py++) {
-        const float *around[5], *covered[5], *in[6];
+        const float *around[5], *covered[5];
+        float *seen[6] = {NULL}, *mixed[6] = {NULL};
         for (int i = 0; i < 5; i++) {
             around[i] = mean + (py / 2 - cell.y0) * stride + apart[i];
             covered[i] = cover + (py / 2 - cell.y0) * stride + apart[i];
         }
-        for (int i = 0; i < 3; i++)
-            in[i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN], i, 2 * cell.x0, py);
-        for (int i = 0; i < 2; i++)
-            in[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, 2 * cell.x0, py);
-        hf_layers_kernels(f)->shares(in, around, channels == 4 ? covered : NULL, n,
-                                     hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, 2 * cell.x0, py), any);
+        hf_row(&f->buf[HF_LAYERS_BUF_SEEN], channels, x0, py, seen);
+        hf_row(&f->buf[HF_LAYERS_BUF_MIXED], channels, x0, py, mixed);
+        for (int i = 0; i < 2; i++) {
+            seen[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], i, x0, py);
+            mixed[4 + i] = hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], i, x0, py);
+        }
+        hf_layers_kernels(f)->shares(seen, mixed, any->mixed, around, channels == 4 ? covered : NULL, n,
+                                     hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, x0, py), any->bright);
     }
 }

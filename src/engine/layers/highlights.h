@@ -10,13 +10,18 @@ enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample
 // patterns up to eighteen times as bright as what is next to them have no highlights.
 #define HF_LAYERS_BESIDE 3
 
+// The back of a mixed pixel is a highlight only from this many times its cap on. A lamp behind a hair is, and the sky behind
+// leaves, which is everywhere and would cost a twentieth more time, is not.
+#define HF_LAYERS_BEHIND 4
+
 // Floats of scratch for a cell of half-resolution pixels.
 size_t hf_layers_highlight_floats(int width, int height);
 // Fill scratch with the means around a cell's pixels.
 void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch);
-// Compute the shares of some of its rows, from their samples.
+// Compute the shares of some of its rows, from their samples. Where the back of a mixed pixel is the brighter highlight it
+// becomes the visible sample, so what must know fronts from backs without looking at their radii comes first.
 void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch,
-                          uint8_t *any);
+                          const struct hf_layers_any *any);
 
 // Take lamps out of the farthest samples of some of its quads, from which hidden samples are made. A quad that is more than LAMP
 // times as bright as what lies 10 and 16 pixels beside it loses weight, and so does one next to it; from twice that on it has

@@ -35,36 +35,84 @@ static void layers_nine_simd(const float *const in[9], int n, float *out)
     }
 }
 
-static void layers_shares_simd(const float *const in[6], const float *const around[5], const float *const covered[5],
-                               int n, float *out, uint8_t *any)
+// below_cap() of highlights.c for two vectors of pixels, as far as `some` of them have a sample.
+HF_INLINE void layers_below_cap(const float *const in[6], const float *const around[5], const float *const covered[5],
+                                int x, const vm some[2], vf part[2])
+{
+    vf light[2], least[2] = {vf_set1(HUGE_VALF), vf_set1(HUGE_VALF)};
+    for (int j = 0; j < 2; j++)
+        light[j] = vf_keep(some[j], layers_light(in, x + j * VF_N));
+    for (int i = 0; i < 5; i++) {
+        const vf mean = vf_load(around[i] + x / 2), m = i ? vf_mul(mean, vf_set1(HF_LAYERS_BESIDE)) : mean;
+        vf v[2];
+        vf_zip(m, m, &v[0], &v[1]);
+        if (covered) {
+            const vf open = vf_sub(vf_set1(1), vf_load(covered[i] + x / 2));
+            vf of[2];
+            vf_zip(open, open, &of[0], &of[1]);
+            for (int j = 0; j < 2; j++)
+                v[j] = vf_fma(of[j], vf_sqrt(vf_max(light[j], vf_zero())), v[j]);
+        }
+        for (int j = 0; j < 2; j++)
+            least[j] = vf_min(v[j], least[j]);
+    }
+    for (int j = 0; j < 2; j++) {
+        const vf r = vf_keep(some[j], vf_load(in[5] + x + j * VF_N));
+        const vf cap =
+            vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(0.001f * 3.14159265f), vf_set1(2)));
+        const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
+        part[j] = vm_any(bright) ? vf_select(bright, vf_div(cap, light[j]), vf_set1(1)) : vf_set1(1);
+    }
+}
+
+// Exchange the samples of some pixels.
+HF_INLINE void layers_change_places(float *const seen[6], float *const mixed[6], int x, vm where)
+{
+    for (int i = 0; i < 6; i++) {
+        if (!seen[i])
+            continue;
+        const vf a = vf_load(seen[i] + x), b = vf_load(mixed[i] + x);
+        vf_store(seen[i] + x, vf_select(where, b, a));
+        vf_store(mixed[i] + x, vf_select(where, a, b));
+    }
+}
+
+// Let the brighter highlights of two vectors of pixels be the visible ones. part: the visible samples' below_cap(); it becomes
+// the pixels'.
+HF_INLINE void layers_brighter_first(float *const seen[6], float *const mixed[6], const float *const around[5],
+                                     const float *const covered[5], int x, vf part[2])
+{
+    const vm some[2] = {vf_gt(vf_load(mixed[4] + x), vf_zero()), vf_gt(vf_load(mixed[4] + x + VF_N), vf_zero())};
+    vf other[2];
+    if (!vm_any(some[0]) && !vm_any(some[1]))
+        return;
+    layers_below_cap((const float *const *)mixed, around, covered, x, some, other);
+    for (int j = 0; j < 2; j++) {
+        other[j] = vf_min(vf_mul(other[j], vf_set1(HF_LAYERS_BEHIND)), vf_set1(1));
+        const vm brighter = vf_lt(other[j], part[j]);
+        if (vm_any(brighter))
+            layers_change_places(seen, mixed, x + j * VF_N, brighter);
+        if (vm_any(vf_lt(other[j], vf_set1(1))))
+            part[j] = vf_div(vf_min(part[j], other[j]), vf_max(part[j], other[j]));
+    }
+}
+
+static void layers_shares_simd(float *const seen[6], float *const mixed[6], const uint8_t *mixes,
+                               const float *const around[5], const float *const covered[5], int n, float *out,
+                               uint8_t *any)
 {
     const vf one = vf_set1(1);
+    const vm all = vf_lt(vf_zero(), one);
     for (int x = 0; x < n; x += 2 * VF_N) {
-        const vf light[2] = {layers_light(in, x), layers_light(in, x + VF_N)};
-        vf least[2] = {vf_set1(HUGE_VALF), vf_set1(HUGE_VALF)};
-        for (int i = 0; i < 5; i++) {
-            const vf mean = vf_load(around[i] + x / 2), m = i ? vf_mul(mean, vf_set1(HF_LAYERS_BESIDE)) : mean;
-            vf v[2];
-            vf_zip(m, m, &v[0], &v[1]);
-            if (covered) {
-                const vf open = vf_sub(one, vf_load(covered[i] + x / 2));
-                vf part[2];
-                vf_zip(open, open, &part[0], &part[1]);
-                for (int j = 0; j < 2; j++)
-                    v[j] = vf_fma(part[j], vf_sqrt(vf_max(light[j], vf_zero())), v[j]);
-            }
-            for (int j = 0; j < 2; j++)
-                least[j] = vf_min(v[j], least[j]);
-        }
+        vf part[2];
+        layers_below_cap((const float *const *)seen, around, covered, x, (const vm[]){all, all}, part);
+        if (mixes[x / 16] | (VF_N == 16 && x + 16 < n ? mixes[x / 16 + 1] : 0))
+            layers_brighter_first(seen, mixed, around, covered, x, part);
         for (int j = 0; j < 2; j++) {
             const int at = x + j * VF_N;
-            const vf r = vf_load(in[5] + at);
-            const vf cap =
-                vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(0.001f * 3.14159265f), vf_set1(2)));
-            const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
             vf share = vf_zero();
-            if (vm_any(bright)) {
-                share = vf_keep(bright, vf_mul(vf_load(in[4] + at), vf_sub(one, vf_div(cap, light[j]))));
+            if (vm_any(vf_lt(part[j], one))) {
+                share = vf_mul(vf_load(seen[4] + at), vf_sub(one, part[j]));
                 any[at / 16] = 1;
             }
             layers_leave(out + at, share);

@@ -11,10 +11,13 @@ typedef void hf_layers_unmix(const struct hf_unmix_row *row, int n);
 typedef void hf_layers_roots(const float *const above[3], const float *const below[3], int n, float *out);
 // Means of nine numbers: along a line, or of nine lines.
 typedef void hf_layers_nine(const float *const in[9], int n, float *out);
-// The part of n pixels' weight that is a highlight. in: colour, weight (4), radius (5). around: square roots of
-// the brightness at five pairs of pixels around; the least counts. covered: roots of alpha at the same places, or NULL.
-typedef void hf_layers_shares(const float *const in[6], const float *const around[5], const float *const covered[5],
-                              int n, float *out, uint8_t *any);
+// The part of n pixels' weight that is a highlight. seen, mixed: colour (NULL: channels that there are not), weight (4), radius
+// (5); they change places where the mixed one is the brighter highlight. mixes[i]: whether pixels 16 i to 16 i + 15 have mixed
+// ones. around: square roots of the brightness at five pairs of pixels around; the least counts. covered: roots of alpha at the
+// same places, or NULL. any[i] becomes nonzero where pixels 16 i to 16 i + 15 have a highlight.
+typedef void hf_layers_shares(float *const seen[6], float *const mixed[6], const uint8_t *mixes,
+                              const float *const around[5], const float *const covered[5], int n, float *out,
+                              uint8_t *any);
 // Take lamps out of n quads (highlights.h). in: roots of colour, weight (4), radius (5). weight holds in[4]; lamps lose some of it
 // or all, others keep it. A tap is a quad beside each: the root of its brightness and, of its two rows of pixels, radius and
 // alpha (or NULL). The nearest of its pixels and the mean of alpha count, so that mirrored pictures give mirrored results.

@@ -80,6 +80,12 @@ static float before_of(const struct hf_known *known, int k, ptrdiff_t at, float 
     return k > 0 && known->behind[k - 1].weight[at] > 0 ? hf_larger(known->behind[k - 1].radius[at], visible) : visible;
 }
 
+// The radius of the nearer of a pixel's two samples, the second with a weight.
+static float front_of(float seen, float weight, float mixed)
+{
+    return weight > 0 && mixed < seen ? mixed : seen;
+}
+
 // Samples of a quad this near to each other are of one surface.
 static const float ONE_SURFACE = 0.25f;
 
@@ -98,9 +104,12 @@ static void look_row(struct band *b, int k, int y)
     for (int py = 2 * y; py < hf_min(2 * y + 2, f->s->height); py++) {
         const ptrdiff_t row = py * known->stride;
         const float *weight = known->behind[k].weight + row, *radius = known->behind[k].radius + row;
-        const float *visible = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 0, py);
+        const float *visible = hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 0, py),
+                    *mixed[2] = {hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], 0, 0, py),
+                                 hf_at(&f->buf[HF_LAYERS_BUF_MIXED_AT], 1, 0, py)};
         for (int x = 2 * b->r.x0; x < hf_min(2 * b->r.x1, f->s->width); x++) {
-            const float d = weight[x] > 0 ? (radius[x] - before_of(known, k, row + x, visible[x])) * 0.5f : 0;
+            const float front = front_of(visible[x], mixed[0][x], mixed[1][x]);
+            const float d = weight[x] > 0 ? (radius[x] - before_of(known, k, row + x, front)) * 0.5f : 0;
             if (!(d > 0))
                 continue;
             for (int side = 0; side < SIDES; side++) {
@@ -272,7 +281,8 @@ static void take_known(const struct band *b, int k, const struct seen *seen, int
         if (!(all > 0))
             continue;
         const float r = known->radius[at + i], most = cover(seen, i, r);
-        const float apart = most > 0 ? r - before_of(hf_layers(f->s)->given, k, at + i, seen->radius[0][i]) : NARROW;
+        const float front = front_of(seen->radius[0][i], seen->weight[1][i], seen->radius[1][i]);
+        const float apart = most > 0 ? r - before_of(hf_layers(f->s)->given, k, at + i, front) : NARROW;
         float view = in_view(b, k, row + i / 2, r);
         if (apart < NARROW) {
             const float part = hf_saturate(2 - apart * (2.0f / NARROW));

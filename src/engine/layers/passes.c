@@ -102,13 +102,13 @@ void hf_layers_unmix_pass(const struct hf_frame *f, struct hf_rect r)
             hf_layers_take_edges(f, rows);
             memset(any.mixed, 1, tiles);
         }
-        if (l->set.highlights)
-            hf_layers_highlights(f, r, rows, means, any.bright);
         if (l->levels) {
             hf_layers_quads_pass(f, rows);
             if (l->set.highlights)
                 hf_layers_leave_lamps(f, r, rows, means);
         }
+        if (l->set.highlights)
+            hf_layers_highlights(f, r, rows, means, &any);
         hf_layers_mark_seen(f, rows, &any);
     }
     if (l->guessed) {
