@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Highlights: the part of a sample that is so bright against its surroundings that its disc's rim would show a coarser
-// resolution's pixels. What stays in the slice is below LEAST of the surroundings, at any exposure. A sample less than
-// PLAIN times as bright as they are has no highlight, or every pattern would be full of them. The surroundings are the
+// resolution's pixels. What stays in the slice is below BRIGHT_LEAST of the surroundings, at any exposure. A sample less than
+// BRIGHT_PLAIN times as bright as they are has no highlight, or every pattern would be full of them. The surroundings are the
 // darkest of five means: around the sample, and next to it on four sides. A disc's rim lies before those, and a lamp of
 // several pixels must not hide itself in its own mean. Where a mean's pixels are transparent they count as bright as
 // the sample: alpha has no shares, so it could not follow the colour there.
@@ -20,9 +20,6 @@
 // row.
 enum { MEAN = 4, APART = 2 * MEAN + 1, REACH = HF_LAYERS_BRIGHT_REACH, PAD = 32 };
 _Static_assert(MEAN + APART <= REACH && REACH + 16 <= PAD, "what means read and vectors write");
-
-#define LEAST 0.001f
-#define PLAIN 2
 
 static float root(float v)
 {
@@ -61,7 +58,7 @@ static float below_cap(const float *const in[6], const float *const around[5], c
         const float v = covered ? at + (1 - covered[i][x / 2]) * root(light) : at;
         m = v < m ? v : m;
     }
-    const float cap = (m * m) * (PLAIN + (r * r) * (LEAST * 3.14159265f));
+    const float cap = (m * m) * (HF_LAYERS_BRIGHT_PLAIN + (r * r) * (HF_LAYERS_BRIGHT_LEAST * 3.14159265f));
     return fabsf(r) > HF_LAYERS_FINE && light > cap ? cap / light : 1;
 }
 

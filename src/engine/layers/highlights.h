@@ -10,8 +10,12 @@ enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample
 // patterns up to eighteen times as bright as what is next to them have no highlights.
 #define HF_LAYERS_BESIDE 3
 
-// The back of a mixed pixel is a highlight only from this many times its cap on. A lamp behind a hair is, and the sky behind
-// leaves, which is everywhere and would cost a twentieth more time, is not.
+// Of a sample of radius r, what exceeds BRIGHT_PLAIN + BRIGHT_LEAST pi r^2 times its surroundings is a highlight (highlights.c).
+#define HF_LAYERS_BRIGHT_PLAIN 2
+#define HF_LAYERS_BRIGHT_LEAST 0.001f
+
+// The back of a mixed pixel is a highlight only from this many times its cap on. A lamp behind a hair exceeds that. The sky behind
+// leaves does not: it is everywhere, and would cost 4 % of the instructions.
 #define HF_LAYERS_BEHIND 4
 
 // Floats of scratch for a cell of half-resolution pixels.

@@ -59,7 +59,8 @@ HF_INLINE void layers_below_cap(const float *const in[6], const float *const aro
     for (int j = 0; j < 2; j++) {
         const vf r = vf_keep(some[j], vf_load(in[5] + x + j * VF_N));
         const vf cap =
-            vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(0.001f * 3.14159265f), vf_set1(2)));
+            vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(HF_LAYERS_BRIGHT_LEAST * 3.14159265f),
+                                                      vf_set1(HF_LAYERS_BRIGHT_PLAIN)));
         const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
         part[j] = vm_any(bright) ? vf_select(bright, vf_div(cap, light[j]), vf_set1(1)) : vf_set1(1);
     }
