@@ -218,6 +218,35 @@ static void behind_hair(struct hf_context *c, double light)
     picture_free(&radius);
 }
 
+// A lamp in the dark: nothing hides it, so all of its light arrives. A pixel at its edge has its depth from a point of the pixel
+// that is the lamp or is not; the light of those that have the wall's may go to either. Both parts of a mixed pixel are then
+// highlights against surroundings without any light.
+static void in_the_dark(struct hf_context *c, double light, double size, float behind)
+{
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radius = picture_new(WIDTH, HEIGHT, 1);
+    struct hf_params p = scene_params();
+    double given = 0, got = 0;
+    for (int k = 0; k < WIDTH * HEIGHT; k++) {
+        const int x = k % WIDTH, y = k / WIDTH;
+        const double away = hypot(x + 0.5 - 100.3, y + 0.5 - 48.2), cover = fmin(fmax(size + 0.5 - away, 0), 1);
+        radius.plane[0][k] = cover > 0.25 * (1 + (x + y) % 3) ? 8 : behind;
+        for (int i = 0; i < 3; i++)
+            colour.plane[i][k] = (float)(cover * light);
+        given += cover * light;
+    }
+    p.engine = HF_ENGINE_LAYERS;
+    p.max_radius = HF_DERIVE;
+    const struct hf_depth depth = picture_radii(&radius);
+    struct picture out = render(c, &colour, &depth, &p);
+    for (int k = 0; k < WIDTH * HEIGHT; k++)
+        got += out.plane[1][k];
+    CHECK_MSG(fabs(got / given - 1) <= 0.01, "light %g, size %g, behind %g: %.3f of it arrives", light, size, behind,
+              got / given);
+    picture_free(&out);
+    picture_free(&colour);
+    picture_free(&radius);
+}
+
 int main(void)
 {
     static const double lights[] = {1.5, 30, 1000, 1e4};
@@ -232,6 +261,9 @@ int main(void)
             beside_bar(c, lights[i], (enum hf_layers_quality)quality);
     for (int i = 1; i < 4; i++)
         behind_hair(c, lights[i]);
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 6; k++)
+            in_the_dark(c, lights[i], 0.75 + 0.5 * (k % 3), k < 3 ? 16 : 12);
     hf_close(&c);
     return check_report();
 }

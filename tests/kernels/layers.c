@@ -65,7 +65,7 @@ static void unmix_call(struct world *w, const struct kernels *k, enum arena a)
                 u.mixed[c][x] = 0;
 }
 
-// Two sets of samples, which may change places, and means. Some tiles have no mixed pixels.
+// Two sets of samples, which may change places, and means, some of surroundings without light. Some tiles have no mixed pixels.
 static void shares_make(struct world *w)
 {
     fill_set(w, IN, 0, w->n);
@@ -75,7 +75,7 @@ static void shares_make(struct world *w)
             line(w, ARENA_MADE, IN + 10)[x] = 0;
     for (int i = 0; i < 3; i++)
         for (int x = 0; x < w->n; x++)
-            line(w, ARENA_MADE, i)[x] = rng_float(&w->rng, 0, 0.5f);
+            line(w, ARENA_MADE, i)[x] = rng_one_in(&w->rng, 8) ? 0 : rng_float(&w->rng, 0, 0.5f);
     for (int i = 0; i < 13; i++)
         put(w, IN + i, w->n, 32);
 }

@@ -211,11 +211,12 @@ static double plain_part(const struct frame *f, const double *s, int x, int y)
     double mean = INFINITY, light = s[0] + s[1] + s[2];
     for (int i = 0; i < 5; i++) {
         const int px = (x & ~1) + side[i][0], py = (y & ~1) + side[i][1];
-        const double open = f->channels == 4 ? 1 - bright_mean(f, 3, 4, px, py) : 0;
+        const double open = f->channels == 4 ? fmax(1 - bright_mean(f, 3, 4, px, py), 0) : 0;
         mean = fmin(mean, (i ? 3 : 1) * bright_mean(f, 0, 3, px, py) + open * root(fmax(light, 0)));
     }
+    mean = fmax(mean, 1e-10);
     const double cap = mean * mean * (2 + 0.001 * PI * s[RADIUS] * s[RADIUS]);
-    return fabs(s[RADIUS]) > 4 && light > cap ? cap / light : 1;
+    return fabs(s[RADIUS]) > 4 && light > cap ? fmax(cap / light, 1e-30) : 1;
 }
 
 // Of a mixed pixel's samples the brighter highlight is shown, less what the other one has. From here on that is `seen`, whether

@@ -60,10 +60,27 @@ static void paint_blocks(struct scene *s, struct rng *rng)
     }
 }
 
+// Nothing shines but lamps of one to three pixels' width, of which some touch.
+static void paint_lamps(struct scene *s, struct rng *rng)
+{
+    const int w = s->colour.width, h = s->colour.height;
+    for (int c = 0; c < 3; c++)
+        memset(s->colour.plane[c], 0, sizeof(float) * (size_t)w * (size_t)h);
+    for (int i = 0; i < 1 + w * h / 200; i++) {
+        const int x0 = rng_below(rng, w), y0 = rng_below(rng, h), size = 1 + rng_below(rng, 3);
+        for (int c = 0; c < 3; c++) {
+            const float light = rng_range(rng, 1, 2000);
+            for (int y = y0; y < y0 + size && y < h; y++)
+                for (int x = x0; x < x0 + size && x < w; x++)
+                    s->colour.plane[c][y * w + x] = light;
+        }
+    }
+}
+
 struct scene scene_new(struct rng *rng, enum scene_kind kind, int width, int height, int channels)
 {
     struct scene s = {picture_new(width, height, channels), picture_new(width, height, 1)};
-    if (kind == SCENE_BLOCKS || kind == SCENE_HIGHLIGHTS || kind == SCENE_NEGATIVE) {
+    if (kind == SCENE_BLOCKS || kind == SCENE_HIGHLIGHTS || kind == SCENE_DARK || kind == SCENE_NEGATIVE) {
         paint_blocks(&s, rng);
     } else {
         paint(&s, rng, 0, 0, width, height, 0);
@@ -74,6 +91,8 @@ struct scene scene_new(struct rng *rng, enum scene_kind kind, int width, int hei
     for (int i = 0; kind == SCENE_HIGHLIGHTS && i < 1 + width * height / 200; i++)
         for (int c = 0; c < channels && c < 3; c++)
             s.colour.plane[c][rng_below(rng, width * height)] = rng_range(rng, 10, 2000);
+    if (kind == SCENE_DARK)
+        paint_lamps(&s, rng);
     for (int i = 0; kind == SCENE_NEGATIVE && i < width * height / 3; i++)
         s.colour.plane[rng_below(rng, 3)][rng_below(rng, width * height)] = rng_range(rng, -2, 0);
     return s;
@@ -87,7 +106,8 @@ void scene_free(struct scene *s)
 
 const char *scene_name(enum scene_kind kind)
 {
-    static const char *const names[] = {"blocks", "noise", "ramp", "far", "near", "sharp", "highlights", "negative"};
+    static const char *const names[] = {"blocks", "noise",      "ramp", "far",     "near",
+                                        "sharp",  "highlights", "dark", "negative"};
     return names[kind];
 }
 

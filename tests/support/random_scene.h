@@ -13,6 +13,7 @@ enum scene_kind {
     SCENE_NEAR,        // all in front
     SCENE_SHARP,       // all in focus
     SCENE_HIGHLIGHTS,  // BLOCKS with few pixels of up to 2000
+    SCENE_DARK,        // BLOCKS without light but for lamps of a few pixels
     SCENE_NEGATIVE,    // BLOCKS with many negative samples
     SCENE_KINDS
 };

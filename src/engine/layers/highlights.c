@@ -55,11 +55,12 @@ static float below_cap(const float *const in[6], const float *const around[5], c
     float m = HUGE_VALF;
     for (int i = 0; i < 5; i++) {
         const float at = i ? around[i][x / 2] * HF_LAYERS_BESIDE : around[i][x / 2];
-        const float v = covered ? at + (1 - covered[i][x / 2]) * root(light) : at;
+        const float v = covered ? at + hf_larger(1 - covered[i][x / 2], 0) * root(light) : at;
         m = v < m ? v : m;
     }
+    m = hf_larger(m, HF_LAYERS_BRIGHT_DARK);
     const float cap = (m * m) * (HF_LAYERS_BRIGHT_PLAIN + (r * r) * (HF_LAYERS_BRIGHT_LEAST * 3.14159265f));
-    return fabsf(r) > HF_LAYERS_FINE && light > cap ? cap / light : 1;
+    return fabsf(r) > HF_LAYERS_FINE && light > cap ? hf_larger(cap / light, HF_LAYERS_BRIGHT_TINY) : 1;
 }
 
 static void change_places(float *const seen[6], float *const mixed[6], int x)

@@ -13,6 +13,10 @@ enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample
 // Of a sample of radius r, what exceeds BRIGHT_PLAIN + BRIGHT_LEAST pi r^2 times its surroundings is a highlight (highlights.c).
 #define HF_LAYERS_BRIGHT_PLAIN 2
 #define HF_LAYERS_BRIGHT_LEAST 0.001f
+// No surroundings are darker than that (a square root of brightness), and no smaller part of a sample lies below its cap. So in
+// the dark a mixed pixel's two parts have a quotient.
+#define HF_LAYERS_BRIGHT_DARK 1e-10f
+#define HF_LAYERS_BRIGHT_TINY 1e-30f
 
 // The back of a mixed pixel is a highlight only from this many times its cap on. A lamp behind a hair exceeds that. The sky behind
 // leaves does not: it is everywhere, and would cost 4 % of the instructions.

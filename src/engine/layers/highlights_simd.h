@@ -47,7 +47,7 @@ HF_INLINE void layers_below_cap(const float *const in[6], const float *const aro
         vf v[2];
         vf_zip(m, m, &v[0], &v[1]);
         if (covered) {
-            const vf open = vf_sub(vf_set1(1), vf_load(covered[i] + x / 2));
+            const vf open = vf_max(vf_sub(vf_set1(1), vf_load(covered[i] + x / 2)), vf_zero());
             vf of[2];
             vf_zip(open, open, &of[0], &of[1]);
             for (int j = 0; j < 2; j++)
@@ -57,12 +57,15 @@ HF_INLINE void layers_below_cap(const float *const in[6], const float *const aro
             least[j] = vf_min(v[j], least[j]);
     }
     for (int j = 0; j < 2; j++) {
+        least[j] = vf_max(least[j], vf_set1(HF_LAYERS_BRIGHT_DARK));
         const vf r = vf_keep(some[j], vf_load(in[5] + x + j * VF_N));
         const vf cap =
             vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(HF_LAYERS_BRIGHT_LEAST * 3.14159265f),
                                                       vf_set1(HF_LAYERS_BRIGHT_PLAIN)));
         const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
-        part[j] = vm_any(bright) ? vf_select(bright, vf_div(cap, light[j]), vf_set1(1)) : vf_set1(1);
+        part[j] = vf_set1(1);
+        if (vm_any(bright))
+            part[j] = vf_select(bright, vf_max(vf_div(cap, light[j]), vf_set1(HF_LAYERS_BRIGHT_TINY)), part[j]);
     }
 }
 
