@@ -208,9 +208,11 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     t->around_x = t->around_y = 0;
     for (int field = 0; field < 2; field++) {
         set_reach(t, field);
-        // The level's own pixels, one more for upsampling, one for the tent and one for its radii.
-        t->around_x = hf_max(t->around_x, hf_max((t->reach_x[field][0] + 1) / 2, t->reach_x[field][1] + 3));
-        t->around_y = hf_max(t->around_y, hf_max((t->reach_y[field][0] + 1) / 2, t->reach_y[field][1] + 3));
+        // A mixed pixel draws what stands beside it. At half resolution: the level's own pixels, one more for upsampling, one for
+        // the tent and one for its radii.
+        const int beside = t->mixed, half = 3 + beside, full = 1 + beside;
+        t->around_x = hf_max(t->around_x, hf_max((t->reach_x[field][0] + full) / 2, t->reach_x[field][1] + half));
+        t->around_y = hf_max(t->around_y, hf_max((t->reach_y[field][0] + full) / 2, t->reach_y[field][1] + half));
     }
     return HF_OK;
 }
