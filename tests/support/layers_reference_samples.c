@@ -155,9 +155,12 @@ static void unmix(struct frame *f, int x, int y)
     const int less = weight[0] < weight[1] ? 0 : 1;
     const double known = fmin(weight[less] / (0.08 * (weight[0] + weight[1])), 1);
     side_farthest(f, x, y, middle, slope, !less, mean[!less], far);
+    double doubt = 0;
+    for (int c = 0; c < f->channels; c++)
+        doubt += pow(mean[less][c] - far[c], 2) * (1 - known) / 4096;
     for (int c = 0; c < 5 && known < 1; c++)
         mean[less][c] = known * mean[less][c] + (1 - known) * far[c];
-    spread[less] *= known;
+    spread[less] = known * (spread[less] + doubt);
     const double a0 = front_of(own, middle, slope), lamp = lamp_of(f, x, y, mean);
     double behind;
     const double share = share_of(f, x, y, a0, mean[0], mean[1], spread, &behind),
@@ -214,24 +217,27 @@ static double plain_part(const struct frame *f, const double *s, int x, int y)
         const double open = f->channels == 4 ? fmax(1 - bright_mean(f, 3, 4, px, py), 0) : 0;
         mean = fmin(mean, (i ? 3 : 1) * bright_mean(f, 0, 3, px, py) + open * root(fmax(light, 0)));
     }
-    mean = fmax(mean, 1e-10);
     const double cap = mean * mean * (2 + 0.001 * PI * s[RADIUS] * s[RADIUS]);
-    return fabs(s[RADIUS]) > 4 && light > cap ? fmax(cap / light, 1e-30) : 1;
+    return fabs(s[RADIUS]) > 4 && light > cap ? cap / light : 1;
 }
 
-// Of a mixed pixel's samples the brighter highlight is shown, less what the other one has. From here on that is `seen`, whether
-// it is in front or not. What is behind counts from four times its cap on.
+// Of a mixed pixel's samples that with more light above its cap is shown, less what the other one has. From here on that is
+// `seen`, whether it is in front or not. What is behind counts from four times its cap on.
 static void highlight(struct frame *f, int x, int y)
 {
-    double *seen = at(&f->seen, x, y), *mixed = at(&f->mixed, x, y), part = plain_part(f, seen, x, y), other = 1;
-    if (mixed[WEIGHT] > 0)
-        other = fmin(4 * plain_part(f, mixed, x, y), 1);
-    for (int i = 0; i < SAMPLE && other < part; i++) {
-        const double kept = seen[i];
-        seen[i] = mixed[i];
-        mixed[i] = kept;
+    double *s[2] = {at(&f->seen, x, y), at(&f->mixed, x, y)}, share[2], light[2];
+    for (int i = 0; i < 2; i++) {
+        const double part = s[i][WEIGHT] > 0 ? plain_part(f, s[i], x, y) : 1;
+        share[i] = s[i][WEIGHT] * (1 - fmin((i ? 4 : 1) * part, 1));
+        light[i] = share[i] > 0 ? share[i] * (s[i][0] + s[i][1] + s[i][2]) : 0;
     }
-    seen[SHARE] = seen[WEIGHT] * (1 - fmin(part, other) / fmax(part, other));
+    const int more = light[1] > light[0];
+    for (int i = 0; i < SAMPLE && more; i++) {
+        const double kept = s[0][i];
+        s[0][i] = s[1][i];
+        s[1][i] = kept;
+    }
+    s[0][SHARE] = light[more] > 0 ? share[more] * (1 - light[!more] / light[more]) : 0;
 }
 
 // ---- hidden samples ----
@@ -265,6 +271,7 @@ static double lamp(const struct frame *f, int x, int y, const double *quad)
         light += quad[c] * fabs(quad[c]);
     double most = root(fmax(light, 0));
     const double own = most;
+    double whole = own;
     for (int i = 0; i < 12; i++) {
         const int away = (i % 2 ? 1 : -1) * distance[i / 4], u = 2 * x + (i & 2 ? 0 : away),
                   v = 2 * y + (i & 2 ? away : 0);
@@ -277,10 +284,11 @@ static double lamp(const struct frame *f, int x, int y, const double *quad)
         }
         const double w = fmin(fmax(nearest - quad[RADIUS] + 2, 0), 1);
         most = i < 4 ? fmax(most, w * around) : most;
+        whole = i < 4 ? fmax(whole, around) : whole;
         seen += i < 4 ? 0 : w;
         mean += i < 4 ? 0 : w * around;
     }
-    mean = seen > 0 ? mean / seen : 0;
+    mean = fmax(seen > 0 ? mean / seen : 0, whole / 256);
     return quad[WEIGHT] > 0 && most > 0 ? fmin(seen, 1) * (1 - fmin(fmax(pow(4 * mean / most, 2) - 1, 0), 1)) : 0;
 }
 

@@ -6,9 +6,9 @@
 // several pixels must not hide itself in its own mean. Where a mean's pixels are transparent they count as bright as
 // the sample: alpha has no shares, so it could not follow the colour there.
 //
-// A pixel has one share, its visible sample's. Behind a thin hair a lamp is the back of a mixed pixel; where that is the
-// brighter highlight, the pixel's two samples change places. Slices treat both alike. What asks later which of them is in
-// front looks at their radii.
+// A pixel has one share, its visible sample's. Behind a thin hair a lamp is the back of a mixed pixel; where that has more light
+// above its cap, the pixel's two samples change places. Slices treat both alike. What asks later which of them is in front looks
+// at their radii.
 #include "engine/layers/highlights.h"
 
 #include <math.h>
@@ -58,9 +58,8 @@ static float below_cap(const float *const in[6], const float *const around[5], c
         const float v = covered ? at + hf_larger(1 - covered[i][x / 2], 0) * root(light) : at;
         m = v < m ? v : m;
     }
-    m = hf_larger(m, HF_LAYERS_BRIGHT_DARK);
     const float cap = (m * m) * (HF_LAYERS_BRIGHT_PLAIN + (r * r) * (HF_LAYERS_BRIGHT_LEAST * 3.14159265f));
-    return fabsf(r) > HF_LAYERS_FINE && light > cap ? hf_larger(cap / light, HF_LAYERS_BRIGHT_TINY) : 1;
+    return fabsf(r) > HF_LAYERS_FINE && light > cap ? cap / light : 1;
 }
 
 static void change_places(float *const seen[6], float *const mixed[6], int x)
@@ -73,22 +72,33 @@ static void change_places(float *const seen[6], float *const mixed[6], int x)
         }
 }
 
-// What changes places has no share at that moment, or there would be a jump: the brighter sample's part below its cap is
-// divided by the other's.
+// The light above the cap of a sample with that share; finite.
+static float above_cap(const float *const in[6], int x, float share)
+{
+    const float light = in[0][x] + in[1][x] + in[2][x];
+    return share * (light < HF_LAYERS_BRIGHT_MOST ? light : HF_LAYERS_BRIGHT_MOST);
+}
+
+// What changes places has no share at that moment, or there would be a jump: the share loses what the other sample has above its
+// cap.
 void hf_layers_shares_c(float *const seen[6], float *const mixed[6], const uint8_t *mixes, const float *const around[5],
                         const float *const covered[5], int n, float *out, uint8_t *any)
 {
     for (int x = 0; x < n; x++) {
-        float part = below_cap((const float *const *)seen, around, covered, x);
+        float share = seen[4][x] * (1 - below_cap((const float *const *)seen, around, covered, x));
         if (mixes[x / 16] && mixed[4][x] > 0) {
-            const float all = below_cap((const float *const *)mixed, around, covered, x) * HF_LAYERS_BEHIND;
-            const float other = all < 1 ? all : 1;
-            if (other < part)
+            const float part = below_cap((const float *const *)mixed, around, covered, x) * HF_LAYERS_BEHIND;
+            const float other = part < 1 ? mixed[4][x] * (1 - part) : 0;
+            const float own_light = above_cap((const float *const *)seen, x, share),
+                        other_light = above_cap((const float *const *)mixed, x, other);
+            if (other_light > own_light) {
                 change_places(seen, mixed, x);
-            part = part < other ? part / other : other / part;
+                share = other - other * (own_light / other_light);
+            } else if (other_light > 0)
+                share = share - share * (other_light / own_light);
         }
-        out[x] = part < 1 ? seen[4][x] * (1 - part) : 0;
-        any[x / 16] |= (uint8_t)(part < 1);
+        out[x] = share;
+        any[x / 16] |= (uint8_t)(share > 0);
     }
 }
 
@@ -108,18 +118,20 @@ void hf_layers_lamps_c(const float *const in[6], const struct hf_lamp_tap tap[HF
     for (int x = 0; x < n; x++) {
         const float light = (in[0][x] * fabsf(in[0][x]) + in[1][x] * fabsf(in[1][x])) + in[2][x] * fabsf(in[2][x]);
         const float own = root(light);
-        float most = own, seen = 0, sum = 0;
+        float most = own, whole = own, seen = 0, sum = 0;
         for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
             const float w = hf_saturate(nearest_of(tap[i].radius, x) - in[5][x] + 2);
             const float v = tap[i].alpha[0] ? tap[i].root[x] + (1 - mean_of(tap[i].alpha, x)) * own : tap[i].root[x];
             if (i < HF_LAYERS_LAMP_NEXT) {
                 most = most > w * v ? most : w * v;
+                whole = whole > v ? whole : v;
                 continue;
             }
             seen = seen + w;
             sum = sum + w * v;
         }
-        const float mean = seen > 0 ? sum / seen : 0, cap = mean * mean * HF_LAYERS_LAMP, brightest = most * most;
+        const float mean = hf_larger(seen > 0 ? sum / seen : 0, whole * HF_LAYERS_LAMP_DARK);
+        const float cap = mean * mean * HF_LAYERS_LAMP, brightest = most * most;
         if (in[4][x] > 0 && brightest > cap) {
             const float lamp = 1 - hf_saturate(2 * cap / brightest - 1);
             weight[x] = in[4][x] * (1 - hf_saturate(seen) * lamp);

@@ -13,10 +13,7 @@ enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample
 // Of a sample of radius r, what exceeds BRIGHT_PLAIN + BRIGHT_LEAST pi r^2 times its surroundings is a highlight (highlights.c).
 #define HF_LAYERS_BRIGHT_PLAIN 2
 #define HF_LAYERS_BRIGHT_LEAST 0.001f
-// No surroundings are darker than that (a square root of brightness), and no smaller part of a sample lies below its cap. So in
-// the dark a mixed pixel's two parts have a quotient.
-#define HF_LAYERS_BRIGHT_DARK 1e-10f
-#define HF_LAYERS_BRIGHT_TINY 1e-30f
+#define HF_LAYERS_BRIGHT_MOST 1e38f  // of more light no highlight is told
 
 // The back of a mixed pixel is a highlight only from this many times its cap on. A lamp behind a hair exceeds that. The sky behind
 // leaves does not: it is everywhere, and would cost 4 % of the instructions.
@@ -35,7 +32,10 @@ void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct 
 // times as bright as what lies 10 and 16 pixels beside it loses weight, and so does one next to it; from twice that on it has
 // none. Surfaces that are nearer by two pixels of radius do not count as beside. A lamp is small: what is hidden next to it is
 // the wall, not more of the lamp.
+// No surroundings are taken to be darker (a square root of brightness) than LAMP_DARK of the quad or what is next to it:
+// before a black wall the last trace of a lamp would be one too.
 #define HF_LAYERS_LAMP 8
+#define HF_LAYERS_LAMP_DARK 0x1p-8f
 void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch);
 
 #endif

@@ -57,7 +57,6 @@ HF_INLINE void layers_below_cap(const float *const in[6], const float *const aro
             least[j] = vf_min(v[j], least[j]);
     }
     for (int j = 0; j < 2; j++) {
-        least[j] = vf_max(least[j], vf_set1(HF_LAYERS_BRIGHT_DARK));
         const vf r = vf_keep(some[j], vf_load(in[5] + x + j * VF_N));
         const vf cap =
             vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(HF_LAYERS_BRIGHT_LEAST * 3.14159265f),
@@ -65,7 +64,7 @@ HF_INLINE void layers_below_cap(const float *const in[6], const float *const aro
         const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
         part[j] = vf_set1(1);
         if (vm_any(bright))
-            part[j] = vf_select(bright, vf_max(vf_div(cap, light[j]), vf_set1(HF_LAYERS_BRIGHT_TINY)), part[j]);
+            part[j] = vf_select(bright, vf_div(cap, light[j]), part[j]);
     }
 }
 
@@ -81,23 +80,36 @@ HF_INLINE void layers_change_places(float *const seen[6], float *const mixed[6],
     }
 }
 
-// Let the brighter highlights of two vectors of pixels be the visible ones. part: the visible samples' below_cap(); it becomes
-// the pixels'.
-HF_INLINE void layers_brighter_first(float *const seen[6], float *const mixed[6], const float *const around[5],
-                                     const float *const covered[5], int x, vf part[2])
+HF_INLINE vf layers_above_cap(const float *const in[3], int x, vf share)
 {
-    const vm some[2] = {vf_gt(vf_load(mixed[4] + x), vf_zero()), vf_gt(vf_load(mixed[4] + x + VF_N), vf_zero())};
-    vf other[2];
+    return vf_mul(share, vf_min(layers_light(in, x), vf_set1(HF_LAYERS_BRIGHT_MOST)));
+}
+
+// Let the brighter highlights of two vectors of pixels be the visible ones. share: the visible samples'; it becomes the pixels'.
+HF_INLINE void layers_brighter_first(float *const seen[6], float *const mixed[6], const float *const around[5],
+                                     const float *const covered[5], int x, vf share[2])
+{
+    const vf one = vf_set1(1), zero = vf_zero();
+    const vm some[2] = {vf_gt(vf_load(mixed[4] + x), zero), vf_gt(vf_load(mixed[4] + x + VF_N), zero)};
+    vf part[2];
     if (!vm_any(some[0]) && !vm_any(some[1]))
         return;
-    layers_below_cap((const float *const *)mixed, around, covered, x, some, other);
+    layers_below_cap((const float *const *)mixed, around, covered, x, some, part);
     for (int j = 0; j < 2; j++) {
-        other[j] = vf_min(vf_mul(other[j], vf_set1(HF_LAYERS_BEHIND)), vf_set1(1));
-        const vm brighter = vf_lt(other[j], part[j]);
+        const int at = x + j * VF_N;
+        part[j] = vf_mul(part[j], vf_set1(HF_LAYERS_BEHIND));
+        const vm bright = vf_lt(part[j], one);
+        if (!vm_any(bright))
+            continue;
+        const vf other = vf_keep(bright, vf_mul(vf_load(mixed[4] + at), vf_sub(one, part[j])));
+        const vf own_light = layers_above_cap((const float *const *)seen, at, share[j]);
+        const vf other_light = vf_keep(bright, layers_above_cap((const float *const *)mixed, at, other));
+        const vm brighter = vf_gt(other_light, own_light);
+        const vf less = vf_div(vf_min(own_light, other_light), vf_max(own_light, other_light));
+        const vf winner = vf_select(brighter, other, share[j]);
+        share[j] = vf_select(vf_gt(other_light, zero), vf_fnma(winner, less, winner), share[j]);
         if (vm_any(brighter))
-            layers_change_places(seen, mixed, x + j * VF_N, brighter);
-        if (vm_any(vf_lt(other[j], vf_set1(1))))
-            part[j] = vf_div(vf_min(part[j], other[j]), vf_max(part[j], other[j]));
+            layers_change_places(seen, mixed, at, brighter);
     }
 }
 
@@ -108,18 +120,17 @@ static void layers_shares_simd(float *const seen[6], float *const mixed[6], cons
     const vf one = vf_set1(1);
     const vm all = vf_lt(vf_zero(), one);
     for (int x = 0; x < n; x += 2 * VF_N) {
-        vf part[2];
-        layers_below_cap((const float *const *)seen, around, covered, x, (const vm[]){all, all}, part);
+        vf share[2];
+        layers_below_cap((const float *const *)seen, around, covered, x, (const vm[]){all, all}, share);
+        for (int j = 0; j < 2; j++)
+            share[j] = vf_mul(vf_load(seen[4] + x + j * VF_N), vf_sub(one, share[j]));
         if (mixes[x / 16] | (VF_N == 16 && x + 16 < n ? mixes[x / 16 + 1] : 0))
-            layers_brighter_first(seen, mixed, around, covered, x, part);
+            layers_brighter_first(seen, mixed, around, covered, x, share);
         for (int j = 0; j < 2; j++) {
             const int at = x + j * VF_N;
-            vf share = vf_zero();
-            if (vm_any(vf_lt(part[j], one))) {
-                share = vf_mul(vf_load(seen[4] + at), vf_sub(one, part[j]));
+            if (vm_any(vf_gt(share[j], vf_zero())))
                 any[at / 16] = 1;
-            }
-            layers_leave(out + at, share);
+            layers_leave(out + at, share[j]);
         }
     }
 }
@@ -163,7 +174,7 @@ static void layers_lamps_simd(const float *const in[6], const struct hf_lamp_tap
         const vf lowest = vf_mul(vf_mul(least, least), vf_set1(0.99f * HF_LAYERS_LAMP));
         if (!vm_any(vm_and(vf_gt(w, zero), vf_gt(vf_mul(most, most), lowest))))
             continue;
-        most = own;
+        vf whole = most = own;
         for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
             const vf part = vf_saturate(vf_add(vf_sub(layers_nearest_of(tap[i].radius, 2 * x), r), vf_set1(2)));
             vf v = vf_load(tap[i].root + x);
@@ -171,12 +182,14 @@ static void layers_lamps_simd(const float *const in[6], const struct hf_lamp_tap
                 v = vf_fma(vf_sub(one, layers_mean_of(tap[i].alpha, 2 * x)), own, v);
             if (i < HF_LAYERS_LAMP_NEXT) {
                 most = vf_max(vf_mul(part, v), most);
+                whole = vf_max(v, whole);
                 continue;
             }
             seen = vf_add(seen, part);
             sum = vf_fma(part, v, sum);
         }
-        const vf mean = vf_keep(vf_gt(seen, zero), vf_div(sum, seen));
+        const vf mean =
+            vf_max(vf_keep(vf_gt(seen, zero), vf_div(sum, seen)), vf_mul(whole, vf_set1(HF_LAYERS_LAMP_DARK)));
         const vf cap = vf_mul(vf_mul(mean, mean), vf_set1(HF_LAYERS_LAMP));
         const vf brightest = vf_mul(most, most);
         const vm bright = vm_and(vf_gt(w, zero), vf_gt(brightest, cap));

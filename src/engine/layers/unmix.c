@@ -87,10 +87,14 @@ int hf_unmix_complete(const struct hf_unmix_row *u, int x, float weight[2], floa
     if (!(weight[side] < little))
         return 1;
     const float known = weight[side] / little;
-    spread[side] = spread[side] * known;
+    float apart = 0;
     farthest(u, x, !side, mean[!side], colour, &radius);
-    for (int c = 0; c < u->channels; c++)
-        mean[side][c] = known > 0 ? colour[c] + known * (mean[side][c] - colour[c]) : colour[c];
+    for (int c = 0; c < u->channels; c++) {
+        const float d = mean[side][c] - colour[c];
+        apart = apart + d * d;
+        mean[side][c] = known > 0 ? colour[c] + known * d : colour[c];
+    }
+    spread[side] = known * (spread[side] + (1 - known) * HF_UNMIX_DOUBT * apart);
     mean[side][4] = known > 0 ? radius + known * (mean[side][4] - radius) : radius;
     return 1;
 }

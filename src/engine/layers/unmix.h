@@ -17,9 +17,12 @@
 // PLAIN: samples more than this many times as bright as the mixed pixel are dimmed. Otherwise the mean of a lamp and
 // the wall around it would be so bright that a mixture of the wall and the front would seem to be all front. A back
 // that covers less than an eighth of the pixel may truly be that bright, but so small a share matters little.
+// DOUBT: the variance of such a mean grows by this part of that between its two estimates. Where the pixel and both sides are
+// black, what is left of a lamp's colour in a mean would decide otherwise, by the last bit of a radius.
 #define HF_UNMIX_FAINT 0.25f
 #define HF_UNMIX_UNSURE 0.1f
 #define HF_UNMIX_LEAN 0.08f
+#define HF_UNMIX_DOUBT 0x1p-12f
 #define HF_UNMIX_PLAIN 8
 // The front's share is a mean of two estimates: by colour, with weight 1, and by the pixel's depth, with weight
 // SPREAD * v. v is the variance of the estimate by colour: the sides' colour variance over the squared distance between

@@ -145,14 +145,18 @@ HF_INLINE void layers_complete(const struct hf_unmix_row *u, struct layers_two x
     for (int c = 0; c < channels; c++)
         other[c] = vf_select(front, mean[1][c], mean[0][c]);
     layers_farthest(u, x, channels, lacks, front, other, colour);
+    const vf doubt = vf_mul(vf_sub(vf_set1(1), known), vf_set1(HF_UNMIX_DOUBT));
     for (int i = 0; i < 2; i++) {
-        spread[i] = vf_select(of[i], vf_mul(spread[i], known), spread[i]);
+        vf apart = vf_zero();
         for (int c = 0; c < 5; c++) {
             if (c < channels || c == 4) {
-                const vf part = vf_add(colour[c], vf_mul(known, vf_sub(mean[i][c], colour[c])));
+                const vf d = vf_sub(mean[i][c], colour[c]), part = vf_add(colour[c], vf_mul(known, d));
                 mean[i][c] = vf_select(of[i], vf_select(vf_gt(known, vf_zero()), part, colour[c]), mean[i][c]);
+                if (c < channels)
+                    apart = vf_add(apart, vf_mul(d, d));
             }
         }
+        spread[i] = vf_select(of[i], vf_mul(known, vf_add(spread[i], vf_mul(doubt, apart))), spread[i]);
     }
 }
 
