@@ -15,6 +15,8 @@ static const char *const
     *const unexplained = "known: not explained so far",
     *const levels =
         "known: what begins to be seen closely outweighs 256 times, for each level, what was found farther away",
+    *const traces =
+        "known: before black surroundings the last trace of a lamp decides by which radius they are blurred",
     *const draws = "known: what is hidden is searched along rows and columns in turn";
 
 static const struct known {
@@ -41,6 +43,8 @@ static const struct known {
     {"hexagon", "a step: focus", 0.587, &unexplained},
     {"layers best", "a step", 18.6, &patterns},
     {"layers", "a step: a depth sample", 3.34, &levels},
+    {"hexagon", "a step at night", 81.2, &traces},
+    {"layers", "a step at night", 14.5, &unexplained},
 };
 
 double known_bound(const struct run *r, const char *what, double bound, const char **why)
