@@ -74,6 +74,29 @@ static void not_drawn(struct hf_context *c)
     }
 }
 
+// An alpha above 1: vectors make the pictures of plain C. They leave out what cannot be beside a lamp, and of such an alpha less
+// than nothing would be open.
+static void above_one(struct hf_context *c)
+{
+    struct hf_context *plain = context_new(HF_ISA_SCALAR, 1, 0, 0);
+    struct rng rng = rng_seed(seed + 3);
+    for (int n = 0; n < 12; n++) {
+        const int width = 16 + rng_below(&rng, 60), height = 16 + rng_below(&rng, 40);
+        struct scene s = scene_new(&rng, (enum scene_kind)(n % SCENE_FAR), width, height, 4);
+        struct hf_params p = random_params(&rng);
+        p.run.deterministic = 1;
+        for (int i = 0; i < width * height; i++)
+            s.colour.plane[3][i] = n % 2 ? 2 : rng_range(&rng, 0, 2);
+        struct picture want = render_scene(plain, &s, &p), got = render_scene(c, &s, &p);
+        const int other = samples_other(&want, &got);
+        CHECK_MSG(!other, "case %d: %d samples are not those of plain C", n, other);
+        picture_free(&got);
+        picture_free(&want);
+        scene_free(&s);
+    }
+    hf_close(&plain);
+}
+
 // If colours are alpha times one colour, so is the result: no pixel is brighter or darker than its alpha says. Both are
 // sums with the same weights, of samples whose roundings differ by 2^-24 each, and of roundings of the sums, pairwise
 // or of at most a hundred rows of similar size: 34 half units of the last place of the largest, as for constant
@@ -189,6 +212,7 @@ int main(int argc, char **argv)
     struct hf_context *c = context_new(HF_ISA_AUTO, 2, 0, 0);
     opaque(c);
     not_drawn(c);
+    above_one(c);
     one_colour(c);
     holes(c);
     over_grey(c);

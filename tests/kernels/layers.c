@@ -287,11 +287,14 @@ void layers_make(struct world *w, int which)
     case LAYERS_LAMPS:
     case LAYERS_LAMPS_ALPHA:
         fill_set(w, 0, 0, w->n);
+        for (int i = 0; i < 3; i++)  // roots of samples of at most 2^125
+            for (int x = 0; x < w->n; x++)
+                line(w, ARENA_MADE, i)[x] = fmaxf(fminf(line(w, ARENA_MADE, i)[x], 6e18f), -6e18f);
         for (int i = 6; i < 8; i++)
             fill_surfaces(w, i, 0, 2 * w->n);
-        for (int i = 8; i < 12; i++)
+        for (int i = 8; i < 14; i++)  // means, and alpha, which may be above 1
             for (int x = 0; x < 2 * w->n; x++)
-                line(w, ARENA_MADE, i)[x] = rng_float(&w->rng, 0, 0.5f);
+                line(w, ARENA_MADE, i)[x] = rng_float(&w->rng, 0, i < 10 ? 0.5f : 1.5f);
         put(w, IN, w->n, 32);
         return;
     case LAYERS_QUADS:
@@ -450,9 +453,10 @@ static void lamps_call(struct world *w, const struct kernels *k, enum arena a, i
     for (int i = 0; i < 6; i++)
         in[i] = line(w, a, i);
     for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++)
-        tap[i] = (struct hf_lamp_tap){line(w, a, 8 + i % 2),
-                                      {line(w, a, 6 + i / 2 % 2), line(w, a, 7 - i / 2 % 2)},
-                                      {alpha ? line(w, a, 10) : NULL, alpha ? line(w, a, 11) : NULL}};
+        tap[i] = (struct hf_lamp_tap){
+            line(w, a, 8 + i % 2),
+            {line(w, a, 6 + i / 2 % 2), line(w, a, 7 - i / 2 % 2)},
+            {alpha ? line(w, a, 10 + (i < 4 ? 0 : 2)) : NULL, alpha ? line(w, a, 11 + (i < 4 ? 0 : 2)) : NULL}};
     memcpy(out, in[4], sizeof *out * (size_t)w->n);
     k->layers.lamps(in, tap, w->n, out);
 }

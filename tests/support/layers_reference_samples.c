@@ -275,13 +275,14 @@ static double lamp(const struct frame *f, int x, int y, const double *quad)
     for (int i = 0; i < 12; i++) {
         const int away = (i % 2 ? 1 : -1) * distance[i / 4], u = 2 * x + (i & 2 ? 0 : away),
                   v = 2 * y + (i & 2 ? away : 0);
-        double nearest = INFINITY, around = 0;
+        double nearest = INFINITY, around = 0, open = 0;
         for (int k = 0; k < 4; k++) {
             const int px = u + k % 2, py = v + k / 2;
             nearest = fmin(nearest, radius_at(f, px, py));
             around += bright_root(f, 0, 3, px, py) / 4;
-            around += f->channels == 4 ? (1 - colour_at(f, 3, px, py)) * own / 4 : 0;
+            open += f->channels == 4 ? (1 - colour_at(f, 3, px, py)) / 4 : 0;
         }
+        around += fmax(open, 0) * own;
         const double w = fmin(fmax(nearest - quad[RADIUS] + 2, 0), 1);
         most = i < 4 ? fmax(most, w * around) : most;
         whole = i < 4 ? fmax(whole, around) : whole;

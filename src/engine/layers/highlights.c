@@ -121,7 +121,8 @@ void hf_layers_lamps_c(const float *const in[6], const struct hf_lamp_tap tap[HF
         float most = own, whole = own, seen = 0, sum = 0;
         for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
             const float w = hf_saturate(nearest_of(tap[i].radius, x) - in[5][x] + 2);
-            const float v = tap[i].alpha[0] ? tap[i].root[x] + (1 - mean_of(tap[i].alpha, x)) * own : tap[i].root[x];
+            const float open = tap[i].alpha[0] ? hf_larger(1 - mean_of(tap[i].alpha, x), 0) : 0;
+            const float v = open > 0 ? tap[i].root[x] + open * own : tap[i].root[x];
             if (i < HF_LAYERS_LAMP_NEXT) {
                 most = most > w * v ? most : w * v;
                 whole = whole > v ? whole : v;

@@ -152,6 +152,15 @@ HF_INLINE vf layers_mean_of(const float *const row[2], int x)
     return vf_mul(vf_add(even, odd), vf_set1(0.25f));
 }
 
+// The brightness at a tap. What is open of it is as bright as the quad itself.
+HF_INLINE vf layers_at_tap(const struct hf_lamp_tap *tap, int x, vf own)
+{
+    const vf root = vf_load(tap->root + x);
+    if (!tap->alpha[0])
+        return root;
+    return vf_fma(vf_max(vf_sub(vf_set1(1), layers_mean_of(tap->alpha, 2 * x)), vf_zero()), own, root);
+}
+
 static void layers_lamps_simd(const float *const in[6], const struct hf_lamp_tap tap[HF_LAYERS_LAMP_TAPS], int n,
                               float *weight)
 {
@@ -166,7 +175,7 @@ static void layers_lamps_simd(const float *const in[6], const struct hf_lamp_tap
         const vf own = vf_sqrt(vf_max(light, zero));
         vf most = own, least = vf_load(tap[HF_LAYERS_LAMP_NEXT].root + x);
         for (int i = 0; i < HF_LAYERS_LAMP_NEXT; i++)
-            most = vf_max(vf_load(tap[i].root + x), most);
+            most = vf_max(layers_at_tap(&tap[i], x, own), most);
         for (int i = HF_LAYERS_LAMP_NEXT + 1; i < HF_LAYERS_LAMP_TAPS; i++)
             least = vf_min(vf_load(tap[i].root + x), least);
         // Most vectors have no lamp: none of their quads is bright even beside the darkest around, and the mean is at least
@@ -177,9 +186,7 @@ static void layers_lamps_simd(const float *const in[6], const struct hf_lamp_tap
         vf whole = most = own;
         for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
             const vf part = vf_saturate(vf_add(vf_sub(layers_nearest_of(tap[i].radius, 2 * x), r), vf_set1(2)));
-            vf v = vf_load(tap[i].root + x);
-            if (tap[i].alpha[0])
-                v = vf_fma(vf_sub(one, layers_mean_of(tap[i].alpha, 2 * x)), own, v);
+            const vf v = layers_at_tap(&tap[i], x, own);
             if (i < HF_LAYERS_LAMP_NEXT) {
                 most = vf_max(vf_mul(part, v), most);
                 whole = vf_max(v, whole);
