@@ -87,6 +87,12 @@ static double part_of(const struct edge_reference *e, int k, double *radius)
     return k ? e->share : 1 - e->share;
 }
 
+// From 0 to 1 without a corner at either end.
+static double smooth(double v)
+{
+    return v * v * (3 - 2 * v);
+}
+
 // What is visible around near pixels: planes of sharp and far colours times weight, then both weights.
 static struct seen seen_of(const struct picture *c, const struct edge_reference *edge)
 {
@@ -102,7 +108,7 @@ static struct seen seen_of(const struct picture *c, const struct edge_reference 
         double r, part = part_of(&edge[at], i & 1, &r);
         // The visible part of a back counts fully, unless its share is almost 0.
         part = i & 1 ? clamp01(64 * part) : part;
-        const double own = r > 0 ? own_part(r) : seen_part(r, seen_widest(&s, x, y)), far = r > 0 ? 1 - own : 0;
+        const double own = r > 0 ? own_part(r) : smooth(seen_part(r, seen_widest(&s, x, y))), far = r > 0 ? 1 - own : 0;
         for (int k = 0; k < n; k++) {
             *seen_at(&s, k, x, y) += part * own * edge[at].colour[i & 1][k] / 4;
             *seen_at(&s, n + k, x, y) += part * far * edge[at].colour[i & 1][k] / 4;

@@ -111,12 +111,15 @@ void hf_scatter_behind_row(const struct hf_scatter_behind *b, const struct hf_sc
     hf_scatter_kernels(b->f)->behind_blend(row, (const float *const *)b->weight, colour, own, out);
 }
 
+// What begins to be seen begins without a corner. Where nothing else is seen, the little that a lamp counts would show at
+// once.
 int hf_seen_weights_c(const struct hf_scatter *t, const float *radius, const float *widest, int first, int n,
                       float *const out[2])
 {
     int some = 0;
     for (int x = first; x < n; x++) {
-        const float r = radius[x], own = r > 0 ? hf_own_part(t, r) : hf_behind_seen(r, widest[x >> 1]);
+        const float r = radius[x];
+        const float own = r > 0 ? hf_own_part(t, r) : hf_scatter_smooth(hf_behind_seen(r, widest[x >> 1]));
         out[0][x] = 0.25f * own;
         out[1][x] = r > 0 ? 0.25f * (1 - own) : 0;
         some |= (out[0][x] > 0) | (out[1][x] > 0) << 1;

@@ -108,8 +108,7 @@ void hf_scatter_known_row(const struct hf_frame *f, const struct hf_scatter_row 
         const float part = hf_saturate(b.share[x] / (mixed ? 1 - mixed[x] : 1)), r = b.radius[x];
         const float sharp = part * hf_own_part(t, fabsf(r)), far = r > 0 ? part - sharp : 0;
         const float weight = row->far ? row->far_weight[x] : 0;
-        const float field =
-            weight > 0 ? hf_scatter_mix(behind[x], row->far[x] / weight, hf_saturate(weight * t->trust)) : behind[x];
+        const float field = hf_field_colour(t, behind[x], row->far ? row->far[x] : 0, weight);
         behind[x] = sharp * (b.colour[c][x] * t->dim) + far * field + (1 - sharp - far) * behind[x];
     }
 }
