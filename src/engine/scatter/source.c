@@ -154,44 +154,82 @@ static void add_picture(struct walk *w, int x, int y, int number, const float co
     }
 }
 
-// A row of the cat's eye's second circle, dy rows from its centre: half its width in 1/256 pixel, and its weight. It is
-// interpolated from two rows of a disc's sprite, so that a circle that has not moved cuts nothing.
-struct circle_row {
-    float half, weight;
+// A sprite between two sizes: its rows are interpolated, so a radius that grows moves its rim by the units of runs alone. All
+// rows are the larger's, which the smaller's may lack.
+struct between {
+    const struct hf_run *small, *large;  // row 0 of both
+    const struct hf_picture *picture;    // the larger
+    int top, bottom;                     // the smaller's rows
+    float t;
 };
 
-static struct circle_row circle_row(const struct hf_aperture *a, const struct hf_picture *disc, float r, float dy)
+static struct between between(const struct hf_aperture *a, float r)
 {
-    if (a->key.blades) {
-        // The widest within the row, so that a circle that has not moved cuts no corner.
-        const float far = __builtin_fabsf(dy), near = far > 0.5f ? far - 0.5f : 0, q = r * r - near * near;
-        const float height = hf_saturate(r + 0.5f - far);
-        return (struct circle_row){q > 0 ? 256 * a->key.scale_x * sqrtf(q) : 0, HF_WHOLE_ROW * height};
-    }
-    static const struct hf_run none = {128, 128, 0};
-    const float first = floorf(dy), t = dy - first;
-    const int row = (int)first - disc->top;
-    const struct hf_run *run = a->run + disc->first;
-    const struct hf_run *over = row >= 0 && row < disc->rows ? &run[row] : &none;
-    const struct hf_run *under = row >= -1 && row < disc->rows - 1 ? &run[row + 1] : &none;
-    return (struct circle_row){hf_lerp((float)over->b, (float)under->b, t) - 128,
-                               hf_lerp((float)over->weight, (float)under->weight, t)};
+    enum { BITS = 23 - HF_SIZES_LOG2 };
+    const uint32_t over = hf_bits(r > 0.5f ? r : 0.5f) - 0x3f000000;
+    const struct hf_picture *p = &a->picture[over >> BITS];
+    return (struct between){a->run + p[0].first - p[0].top,
+                            a->run + p[1].first - p[1].top,
+                            &p[1],
+                            p[0].top,
+                            p[0].top + p[0].rows - 1,
+                            (float)(over & ((1 << BITS) - 1)) * (1.0f / (1 << BITS))};
 }
 
-// Cut a sprite by the cat's eye's second circle, of radius r around (cx, cy), with the shape `disc`. The rows go to
-// w->runs. Returns the sum of their weights.
-static float cut_picture(struct walk *w, const struct hf_picture *p, const struct hf_picture *disc, float r, float cx,
+// A row of real numbers, in the units of runs but from the pixel's middle on, so that mirrored rows have the same bits.
+struct real_row {
+    float a, b, weight;
+};
+
+// Two rows by parts of 1. A row's ends count by its weight: those of the first and last rows depend steeply on the radius.
+static struct real_row mix_rows(struct real_row v, struct real_row w, float t)
+{
+    const float weight = hf_lerp(v.weight, w.weight, t);
+    const float part = v.weight == w.weight ? t : weight > 0 ? t * w.weight / weight : 0;
+    return (struct real_row){hf_lerp(v.a, w.a, part), hf_lerp(v.b, w.b, part), weight};
+}
+
+static struct real_row row_of(const struct between *s, int dy)
+{
+    const int top = s->picture->top, none = dy < top || dy >= top + s->picture->rows;
+    if (none)
+        return (struct real_row){0, 0, 0};
+    const struct hf_run *large = &s->large[dy], *small = dy < s->top || dy > s->bottom ? NULL : &s->small[dy];
+    const struct real_row to = {(float)(large->a - 128), (float)(large->b - 128), (float)large->weight};
+    struct real_row from = {0};
+    if (small)
+        from = (struct real_row){(float)(small->a - 128), (float)(small->b - 128), (float)small->weight};
+    return mix_rows(from, to, s->t);
+}
+
+// A row of the cat's eye's second circle where it cuts a polygon, dy rows from the circle's centre: the widest within the
+// row, so that a circle that has not moved cuts no corner.
+static struct real_row circle_row(const struct hf_aperture *a, float r, float dy)
+{
+    const float far = __builtin_fabsf(dy), near = far > 0.5f ? far - 0.5f : 0, q = r * r - near * near;
+    const float height = hf_saturate(r + 0.5f - far), half = q > 0 ? 256 * a->key.scale_x * sqrtf(q) : 0;
+    return (struct real_row){-half, half, HF_WHOLE_ROW * height};
+}
+
+// Cut a sprite by the cat's eye's second circle, of radius r around (cx, cy), with the shape `disc`. Where that is a disc, its
+// rows are interpolated from two of the sprite's, so that a circle that has not moved cuts nothing. The rows go to w->runs.
+// Returns the sum of their weights.
+static float cut_picture(struct walk *w, const struct between *s, const struct between *disc, float r, float cx,
                          float cy)
 {
     const struct hf_aperture *a = hf_scatter_aperture(w->t, w->field);
-    const float scale = 256 * a->key.scale_x;
+    const struct hf_picture *p = s->picture;
+    const float shift = 256 * a->key.scale_x * cx, dy = (float)p->top - cy, first = floorf(dy);
+    struct real_row next = row_of(disc, (int)first);
     float area = 0;
     for (int i = 0; i < p->rows; i++) {
-        const struct hf_run *run = &a->run[p->first + i];
-        const struct circle_row c = circle_row(a, disc, r, (float)(p->top + i) - cy);
-        const int32_t from = 128 + (int32_t)lrintf(cx * scale - c.half);
-        const int32_t to = 128 + (int32_t)lrintf(cx * scale + c.half);
-        struct hf_run cut = {hf_max(run->a, from), hf_min(run->b, to), hf_min(run->weight, (int)lrintf(c.weight))};
+        const struct real_row run = row_of(s, p->top + i), before = next;
+        next = row_of(disc, (int)first + i + 1);
+        const struct real_row c = a->key.blades ? circle_row(a, r, dy + (float)i) : mix_rows(before, next, dy - first);
+        const float from = c.a + shift, to = c.b + shift;
+        struct hf_run cut = {128 + (int32_t)lrintf(run.a > from ? run.a : from),
+                             128 + (int32_t)lrintf(run.b < to ? run.b : to),
+                             (int32_t)lrintf(run.weight < c.weight ? run.weight : c.weight)};
         if (cut.b <= cut.a)
             cut = (struct hf_run){0};
         area += (float)cut.weight * (float)(cut.b - cut.a);
@@ -219,23 +257,23 @@ static void draw_cut(struct walk *w, int x, int y, const struct hf_picture *p, c
 static void add_cat_eye(struct walk *w, int x, int y, float r, const float colour[3], float weight)
 {
     const struct hf_setup *s = w->f->s;
-    const struct hf_picture *picture = hf_scatter_aperture(w->t, w->field)->picture,
-                            *p = &picture[hf_picture_number(r)];
+    const struct between outer = between(hf_scatter_aperture(w->t, w->field), r);
+    const struct hf_picture *p = outer.picture;
     const float step = w->level ? 2 : 1, toward = (w->field ? 1 : -1) * w->t->cat_eye * r;
     const float cx = toward * (2 * (((float)x + 0.5f) * step) - (float)s->width) * w->t->corner;
     const float cy = toward * (2 * (((float)y + 0.5f) * step) - (float)s->height) * w->t->corner;
     const float inner = r * w->t->ring, hole = hole_of(w->t, r);
-    const struct hf_picture *inside = &picture[hf_picture_number(inner)];
-    const float hidden = hole > 0 ? hole * cut_picture(w, inside, p, r, cx, cy) : 0;
-    float area = cut_picture(w, p, p, r, cx, cy) - hidden;
+    const struct between inside = between(hf_scatter_aperture(w->t, w->field), inner);
+    const float hidden = hole > 0 ? hole * cut_picture(w, &inside, &outer, r, cx, cy) : 0;
+    float area = cut_picture(w, &outer, &outer, r, cx, cy) - hidden;
     if (area <= 0) {
         w->runs[-p->top] = (struct hf_run){127, 129, HF_WHOLE_ROW};
         area = 2 * HF_WHOLE_ROW;
     }
     draw_cut(w, x, y, p, colour, weight, (struct part){1 / area, 1});
     if (hidden > 0) {
-        cut_picture(w, inside, p, r, cx, cy);
-        draw_cut(w, x, y, inside, colour, weight, (struct part){1 / area, -hole});
+        cut_picture(w, &inside, &outer, r, cx, cy);
+        draw_cut(w, x, y, inside.picture, colour, weight, (struct part){1 / area, -hole});
     }
 }
 
