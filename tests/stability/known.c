@@ -17,6 +17,8 @@ static const char *const
         "known: what begins to be seen closely outweighs 256 times, for each level, what was found farther away",
     *const traces =
         "known: before black surroundings the last trace of a lamp decides by which radius they are blurred",
+    *const units =
+        "known: a sprite has one of 1024 sizes an octave, its rows' ends are 256ths of a pixel, their heights 128ths",
     *const draws = "known: what is hidden is searched along rows and columns in turn";
 
 static const struct known {
@@ -44,6 +46,7 @@ static const struct known {
     {"layers best", "a step", 18.6, &patterns},
     {"layers", "a step: a depth sample", 3.34, &levels},
     {"hexagon", "a step at night", 81.2, &traces},
+    {"scatter", "a step at night", 21.6, &units},
     {"layers", "a step at night", 14.5, &unexplained},
 };
 
