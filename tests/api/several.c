@@ -319,6 +319,35 @@ static void test_region(void)
     CHECK_INT(other, 0);
 }
 
+// A near slope that fills all but the left edge of the picture, before a known surface in focus; its blur leaves some of that open.
+// Most tiles see nothing that they could guess from, and show what is known all the same: the bits are those of other tiles.
+static void test_tiles(void)
+{
+    static struct picture near, known;
+    const struct hf_config config = {.size = sizeof config, .threads = 1, .tile_width = 16, .tile_height = 16};
+    const struct hf_params lens = params;
+    struct hf_context *const large = context;
+    make(&near);
+    make(&known);
+    for (int i = 0; i < N; i++) {
+        const int x = i % W;
+        set(&near, x, i / W, 0.8f, 0.1f, 0.1f, 1, x < 4 ? 6 : 4 - (float)x / 75);
+        set(&known, x, i / W, 0, 1, (float)(i % 7) / 7, 1, 6);
+    }
+    params.model = HF_MODEL_RANGE;
+    params.range.distance = 4;
+    params.max_radius = 6;
+    const struct hf_layer two[] = {layer_of(&near, HF_LAYER_WHOLE), layer_of(&known, HF_LAYER_PEEL)};
+    CHECK_INT(render(&out[0], two, 2), HF_OK);
+    if (CHECK_INT(hf_open(&context, &config), HF_OK)) {
+        CHECK_INT(render(&out[1], two, 2), HF_OK);
+        CHECK(same());
+        hf_close(&context);
+    }
+    context = large;
+    params = lens;
+}
+
 // 1 if the call is refused with a sentence that holds a word.
 static int refused(const struct hf_layer *layers, int count, const char *word)
 {
@@ -369,6 +398,7 @@ int main(void)
         test_hidden();
         test_constant();
         test_region();
+        test_tiles();
         test_guessed();
     }
     params.layers.quality = HF_LAYERS_STANDARD;
@@ -380,6 +410,7 @@ int main(void)
         test_hidden();
         test_constant();
         test_region();
+        test_tiles();
         test_same_blur();
     }
     params.engine = HF_ENGINE_LAYERS;
