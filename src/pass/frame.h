@@ -206,6 +206,12 @@ static inline float hf_larger(float a, float b)
     return a > b ? a : b;
 }
 
+// From 0 to 1 without a corner at either end.
+static inline float hf_smoothstep(float t)
+{
+    return (t * t) * (3 - 2 * t);
+}
+
 // 0..1; NaN becomes 0.
 static inline float hf_saturate(float v)
 {

@@ -67,8 +67,9 @@ struct hf_integral hf_integral_make(double *sum, const struct hf_image *m, int c
     return (struct hf_integral){sum, m->width, m->height};
 }
 
-// Light within this many rows below which there may be none: rounding errors of the integral's differences. Four values have at most
-// two errors for each row between them, eight for the places between pixels, of half a unit in the last place of all light each.
+// The most light that rounding alone can show within so many rows where there is none: a difference of four values of the integral,
+// of which each has two errors for each row between them and eight for places between pixels, of half a unit in the last place of all
+// light.
 static double noise_of(const struct hf_integral *t, double rows)
 {
     const double all = t->sum[(size_t)t->height * ((size_t)t->width + 1) + (size_t)t->width];

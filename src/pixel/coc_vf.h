@@ -21,11 +21,6 @@
         HF_WITH_FORM_(HF_FORM_COC, call)                                                                               \
     }
 
-HF_INLINE vf coc_shape(vf t)
-{
-    return vf_mul(vf_mul(t, t), vf_sub(vf_set1(3), vf_mul(vf_set1(2), t)));
-}
-
 HF_INLINE vf coc_round_unorm(vf t)
 {
     // The sum is positive, so truncation is floor.
@@ -87,7 +82,7 @@ HF_INLINE int coc_misses_some(vi a, vi b, vi c, vi d)
 HF_INLINE vf coc_ramp(const struct hf_setup *s, vf t)
 {
     t = vf_saturate(t);
-    return s->smoothstep ? coc_shape(t) : t;
+    return s->smoothstep ? vf_smoothstep(t) : t;
 }
 
 HF_INLINE vf coc_near(const struct hf_setup *s, vf v)

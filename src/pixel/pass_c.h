@@ -22,7 +22,7 @@ float hf_coc_variable(const struct hf_frame *f, int x, int y, struct hf_counts *
 static inline float hf_ramp(const struct hf_setup *s, float t)
 {
     t = hf_saturate(t);
-    return s->smoothstep ? (t * t) * (3 - 2 * t) : t;
+    return s->smoothstep ? hf_smoothstep(t) : t;
 }
 
 float hf_round_coc(enum hf_storage storage, float t);

@@ -76,6 +76,12 @@ HF_INLINE vf vf_saturate(vf v)
     return vf_min(vf_max(v, vf_zero()), vf_set1(1));
 }
 
+// As hf_smoothstep().
+HF_INLINE vf vf_smoothstep(vf t)
+{
+    return vf_mul(vf_mul(t, t), vf_sub(vf_set1(3), vf_mul(vf_set1(2), t)));
+}
+
 // v clamped to the range between a and b, in either order.
 HF_INLINE vf vf_between(vf v, vf a, vf b)
 {

@@ -172,12 +172,9 @@ static struct hard_case any_case(struct hf_context *c, const char *engine, unsig
     // Half of the steps are small, so that their parts are.
     if (rng_below(&rng, 2))
         h.to = h.from + (h.to - h.from) * 0.02;
+    const char *light = h.night ? " at night" : h.lamps ? " with lamps" : "";
     snprintf(h.name, sizeof h.name, "%s, %d x %d%s, %s", p->model == HF_MODEL_LENS ? "lens" : "range",
-             h.scene.colour.width, h.scene.colour.height,
-             h.night   ? " at night"
-             : h.lamps ? " with lamps"
-                       : "",
-             moved_names[h.moved]);
+             h.scene.colour.width, h.scene.colour.height, light, moved_names[h.moved]);
     return h;
 }
 

@@ -54,7 +54,7 @@ void hf_gaussian_columns_c(const float *in, ptrdiff_t in_stride, int rows, int f
 
 static float shape(const struct hf_setup *s, float t)
 {
-    return s->smoothstep ? (t * t) * (3 - 2 * t) : t;
+    return s->smoothstep ? hf_smoothstep(t) : t;
 }
 
 static float blend_of(const struct hf_setup *s, float z)

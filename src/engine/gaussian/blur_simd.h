@@ -149,7 +149,7 @@ HF_INLINE vf blend_vf(const struct hf_setup *s, const enum hf_depth_form form, c
     const vf distance = vf_abs(vf_sub(gaussian_depth_vf(s, faithful, z), vf_set1(hf_gaussian(s)->focus_d)));
     vf t = vf_min(vf_mul(vf_set1(3), distance), vf_set1(1));
     if (s->smoothstep)
-        t = coc_shape(t);
+        t = vf_smoothstep(t);
     t = vf_mul(vf_set1(s->strength), t);
     sums->nan = vm_or(sums->nan, vf_ne(d, d));
     sums->none = vi_count(sums->none, none);

@@ -72,11 +72,10 @@ static void change_places(float *const seen[6], float *const mixed[6], int x)
         }
 }
 
-// The light above the cap of a sample with that share; finite.
+// The light above the cap of a sample with that share. Samples are at most 2^125 (slices.c), so it is finite.
 static float above_cap(const float *const in[6], int x, float share)
 {
-    const float light = in[0][x] + in[1][x] + in[2][x];
-    return share * (light < HF_LAYERS_BRIGHT_MOST ? light : HF_LAYERS_BRIGHT_MOST);
+    return share * (in[0][x] + in[1][x] + in[2][x]);
 }
 
 // What changes places has no share at that moment, or there would be a jump: the share loses what the other sample has above its

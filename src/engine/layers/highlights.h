@@ -13,7 +13,6 @@ enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample
 // Of a sample of radius r, what exceeds BRIGHT_PLAIN + BRIGHT_LEAST pi r^2 times its surroundings is a highlight (highlights.c).
 #define HF_LAYERS_BRIGHT_PLAIN 2
 #define HF_LAYERS_BRIGHT_LEAST 0.001f
-#define HF_LAYERS_BRIGHT_MOST 1e38f  // of more light no highlight is told
 
 // The back of a mixed pixel is a highlight only from this many times its cap on. A lamp behind a hair exceeds that. The sky behind
 // leaves does not: it is everywhere, and would cost 4 % of the instructions.

@@ -62,9 +62,7 @@ HF_INLINE void layers_below_cap(const float *const in[6], const float *const aro
             vf_mul(vf_mul(least[j], least[j]), vf_fma(vf_mul(r, r), vf_set1(HF_LAYERS_BRIGHT_LEAST * 3.14159265f),
                                                       vf_set1(HF_LAYERS_BRIGHT_PLAIN)));
         const vm bright = vm_and(vf_gt(vf_abs(r), vf_set1(HF_LAYERS_FINE)), vf_gt(light[j], cap));
-        part[j] = vf_set1(1);
-        if (vm_any(bright))
-            part[j] = vf_select(bright, vf_div(cap, light[j]), part[j]);
+        part[j] = vm_any(bright) ? vf_select(bright, vf_div(cap, light[j]), vf_set1(1)) : vf_set1(1);
     }
 }
 
@@ -78,11 +76,6 @@ HF_INLINE void layers_change_places(float *const seen[6], float *const mixed[6],
         vf_store(seen[i] + x, vf_select(where, b, a));
         vf_store(mixed[i] + x, vf_select(where, a, b));
     }
-}
-
-HF_INLINE vf layers_above_cap(const float *const in[3], int x, vf share)
-{
-    return vf_mul(share, vf_min(layers_light(in, x), vf_set1(HF_LAYERS_BRIGHT_MOST)));
 }
 
 // Let the brighter highlights of two vectors of pixels be the visible ones. share: the visible samples'; it becomes the pixels'.
@@ -102,8 +95,8 @@ HF_INLINE void layers_brighter_first(float *const seen[6], float *const mixed[6]
         if (!vm_any(bright))
             continue;
         const vf other = vf_keep(bright, vf_mul(vf_load(mixed[4] + at), vf_sub(one, part[j])));
-        const vf own_light = layers_above_cap((const float *const *)seen, at, share[j]);
-        const vf other_light = vf_keep(bright, layers_above_cap((const float *const *)mixed, at, other));
+        const vf own_light = vf_mul(share[j], layers_light((const float *const *)seen, at));
+        const vf other_light = vf_keep(bright, vf_mul(other, layers_light((const float *const *)mixed, at)));
         const vm brighter = vf_gt(other_light, own_light);
         const vf less = vf_div(vf_min(own_light, other_light), vf_max(own_light, other_light));
         const vf winner = vf_select(brighter, other, share[j]);

@@ -54,8 +54,8 @@
 
 // 1 / d^4 for 7 x 7 pixels; 0 for the middle one.
 extern const float hf_unmix_weights[7][7];
-// Complete the mean of the side with less weight (LEAN), and scale its variance down. mean: colour, radius (4). Returns
-// 0 if neither side has any weight.
+// Complete the mean of the side with less weight (LEAN), and make its variance that of the mixture (DOUBT). mean: colour, radius (4).
+// Returns 0 if neither side has any weight.
 int hf_unmix_complete(const struct hf_unmix_row *row, int x, float weight[2], float mean[2][5], float spread[2]);
 
 // How far a pixel shows a lamp, 0 to 1. most: brightness of the brighter of front and back, the sum of channels / 8.

@@ -119,7 +119,7 @@ int hf_seen_weights_c(const struct hf_scatter *t, const float *radius, const flo
     int some = 0;
     for (int x = first; x < n; x++) {
         const float r = radius[x];
-        const float own = r > 0 ? hf_own_part(t, r) : hf_scatter_smooth(hf_behind_seen(r, widest[x >> 1]));
+        const float own = r > 0 ? hf_own_part(t, r) : hf_smoothstep(hf_behind_seen(r, widest[x >> 1]));
         out[0][x] = 0.25f * own;
         out[1][x] = r > 0 ? 0.25f * (1 - own) : 0;
         some |= (out[0][x] > 0) | (out[1][x] > 0) << 1;

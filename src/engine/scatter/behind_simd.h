@@ -19,8 +19,7 @@ static int seen_weights_simd(const struct hf_scatter *t, const float *radius, co
             const vf nearer = vf_saturate(vf_add(wide[k], r)), hardly = vf_saturate(vf_add(vf_set1(1.5f), r));
             const vf fade = vf_saturate(vf_mul(vf_sub(vf_set1(t->fade), r), vf_set1(t->fade_slope)));
             const vm is_far = vf_gt(r, zero);
-            const vf own = vf_select(is_far, fade, scatter_smooth(vf_max(nearer, hardly))),
-                     sharp = vf_mul(quarter, own);
+            const vf own = vf_select(is_far, fade, vf_smoothstep(vf_max(nearer, hardly))), sharp = vf_mul(quarter, own);
             const vf far = vf_keep(is_far, vf_mul(quarter, vf_sub(vf_set1(1), own)));
             vf_store(out[0] + x + k * VF_N, sharp);
             vf_store(out[1] + x + k * VF_N, far);

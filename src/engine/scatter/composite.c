@@ -246,8 +246,8 @@ void hf_scatter_composite_c(const struct hf_frame *f, struct hf_rect r)
             struct hf_behind behind = {.planes =
                                            hf_scatter_behind_planes(hf_scatter(f->s)->opaque ? 3 : f->s->channels)};
             // What is known shows also where nothing is visible to guess from: `behind` is 0 there.
-            const int some = levels && hf_behind_make(&behind, &hf_scatter_behind_source, f, block, levels, f->work),
-                      is = some || (levels && hf_scatter(f->s)->given);
+            const int is = levels && (hf_behind_make(&behind, &hf_scatter_behind_source, f, block, levels, f->work) ||
+                                      hf_scatter(f->s)->given);
             for (int row = 2 * block.y0; row < hf_min(2 * block.y1, f->s->height) && !hf_stopped(f->s->stop); row++)
                 composite_row(f, row, block, is ? &behind : NULL);
         }

@@ -55,17 +55,11 @@ HF_INLINE vf scatter_mix(vf a, vf b, vf t)
     return vf_select(vf_lt(t, vf_set1(1)), vf_select(vf_eq(t, vf_zero()), a, v), b);
 }
 
-// As hf_scatter_smooth() in walk.h.
-HF_INLINE vf scatter_smooth(vf v)
-{
-    return vf_mul(vf_mul(v, v), vf_sub(vf_set1(3), vf_mul(vf_set1(2), v)));
-}
-
 // As hf_field_colour() in walk.h.
 HF_INLINE vf scatter_field_colour(const struct hf_scatter *t, vf own, vf sum, vf weight)
 {
     const vf part = vf_mul(weight, vf_set1(t->trust));
-    const vf v = scatter_mix(own, vf_div(sum, weight), scatter_smooth(vf_saturate(part)));
+    const vf v = scatter_mix(own, vf_div(sum, weight), vf_smoothstep(vf_saturate(part)));
     return vf_select(vf_gt(weight, vf_zero()), v, own);
 }
 

@@ -189,17 +189,19 @@ static struct real_row mix_rows(struct real_row v, struct real_row w, float t)
     return (struct real_row){hf_lerp(v.a, w.a, part), hf_lerp(v.b, w.b, part), weight};
 }
 
+static struct real_row real_of(const struct hf_run *run)
+{
+    return (struct real_row){(float)(run->a - 128), (float)(run->b - 128), (float)run->weight};
+}
+
+// Row dy of a sprite between two sizes; nothing beyond its rows.
 static struct real_row row_of(const struct between *s, int dy)
 {
-    const int top = s->picture->top, none = dy < top || dy >= top + s->picture->rows;
-    if (none)
-        return (struct real_row){0, 0, 0};
-    const struct hf_run *large = &s->large[dy], *small = dy < s->top || dy > s->bottom ? NULL : &s->small[dy];
-    const struct real_row to = {(float)(large->a - 128), (float)(large->b - 128), (float)large->weight};
-    struct real_row from = {0};
-    if (small)
-        from = (struct real_row){(float)(small->a - 128), (float)(small->b - 128), (float)small->weight};
-    return mix_rows(from, to, s->t);
+    const int top = s->picture->top;
+    if (dy < top || dy >= top + s->picture->rows)
+        return (struct real_row){0};
+    const int both = dy >= s->top && dy <= s->bottom;
+    return mix_rows(both ? real_of(&s->small[dy]) : (struct real_row){0}, real_of(&s->large[dy]), s->t);
 }
 
 // A row of the cat's eye's second circle where it cuts a polygon, dy rows from the circle's centre: the widest within the

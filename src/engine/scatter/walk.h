@@ -76,12 +76,6 @@ static inline float hf_scatter_mix(float a, float b, float t)
     return t < 1 ? hf_lerp(a, b, t) : b;
 }
 
-// From 0 to 1 without a corner at either end.
-static inline float hf_scatter_smooth(float v)
-{
-    return v * v * (3 - 2 * v);
-}
-
 // A field's colour from its sums. Where sprites may leave their own pixels out, weights can be as small as sprites' rims are
 // thin: there the pixel's own colour takes over gradually. It begins without a corner, because it may be a lamp's in the
 // dark, and a weight changes with every size of a sprite.
@@ -89,7 +83,7 @@ static inline float hf_field_colour(const struct hf_scatter *t, float own, float
 {
     if (!(weight > 0))
         return own;
-    return hf_scatter_mix(own, sum / weight, hf_scatter_smooth(hf_saturate(weight * t->trust)));
+    return hf_scatter_mix(own, sum / weight, hf_smoothstep(hf_saturate(weight * t->trust)));
 }
 
 // The neighbour, on one axis, of a pixel's half-resolution pixel that its tent reaches.
