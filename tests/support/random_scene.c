@@ -65,7 +65,7 @@ static void paint_lamps(struct scene *s, struct rng *rng)
 {
     const int w = s->colour.width, h = s->colour.height;
     for (int c = 0; c < 3; c++)
-        picture_fill(&s->colour, c, 0);
+        memset(s->colour.plane[c], 0, sizeof(float) * (size_t)w * (size_t)h);
     for (int i = 0; i < 1 + w * h / 200; i++) {
         const int x0 = rng_below(rng, w), y0 = rng_below(rng, h), size = 1 + rng_below(rng, 3);
         for (int c = 0; c < 3; c++) {
