@@ -4,13 +4,40 @@
 // counts among hidden samples.
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "engine/layers/hidden.h"
+#include "engine/layers/kernels.h"
 #include "engine/layers/unmix.h"
 #include "frame/resolve.h"
 #include "pass/check.h"
 #include "support/check.h"
 #include "support/render.h"
+
+// Every sample is shared between slices as a whole. Means of radii are rounded, so a few lie beyond the outermost slices.
+static void shared(const struct hf_layers *l)
+{
+    enum { N = 4096, ANY = N / 16 };
+    static float radius[N], out[N], sum[N];
+    static uint8_t any[ANY];
+    const float *in[6] = {[5] = radius};
+    float *const to[5] = {[4] = out};
+    const float low = l->slice[0].radius * (1 + 8 * FLT_EPSILON),
+                high = l->slice[l->slices - 1].radius * (1 + 8 * FLT_EPSILON);
+    for (int i = 0; i < N; i++)
+        radius[i] = i < N - 1 ? low + (high - low) * (float)i / (N - 1) : high;
+    memset(sum, 0, sizeof sum);
+    for (int k = 0; k < l->slices; k++) {
+        struct hf_slice s = l->slice[k];
+        s.scale = 1;
+        hf_layers_weigh_c(&s, in, NULL, 0, 1, 0, N, 0, to, any);
+        for (int i = 0; i < N; i++)
+            sum[i] += out[i];
+    }
+    // Two slices share a sample: one shows a product, the other 1 less the same product. That difference and the sum round.
+    for (int i = 0; i < N; i++)
+        CHECK_MSG(fabsf(sum[i] - 1) <= FLT_EPSILON, "%.9g of a sample of radius %.9g is shown", sum[i], radius[i]);
+}
 
 // Slices cover the radii in order. No two are farther apart than the spacing or a 32nd of their radius (in the finer
 // qualities half of 1 or a 16th spacings), plus a rounding. There is none between 0 and 1.
@@ -39,6 +66,7 @@ static void slices(enum hf_layers_quality quality)
         CHECK_MSG(b > a && b - a <= (inner < 1 ? 1 : widest) + FLT_EPSILON * fmaxf(fabsf(a), fabsf(b)),
                   "quality %d: slices at %g and %g", (int)quality, a, b);
     }
+    shared(&l);
     hf_layers_engine.own.release(&l, &hf_mem_default);
     picture_free(&colour);
     picture_free(&radii);

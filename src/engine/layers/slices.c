@@ -64,6 +64,10 @@ static void make_disc(struct hf_slice *s, double r, double wide, struct hf_disc_
     s->reach = s->rows - 1 > s->reach ? s->rows - 1 : s->reach;
 }
 
+// Samples beyond the outermost slices are theirs as a whole: rounding may put the mean of radii beyond the largest of them.
+// The first one's part of a sample grows with its distance from so far away that it is 1 everywhere.
+#define BEYOND 0x1p100f
+
 static void set_neighbours(struct hf_slice *slice, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -77,8 +81,8 @@ static void set_neighbours(struct hf_slice *slice, int count)
         s->square = s->radius * s->radius;
         s->before = a >= 0 ? before : -HUGE_VALF;
         s->after = z < count ? after : HUGE_VALF;
-        s->before_square = before * before;
-        s->before_scale = a >= 0 ? 1 / (s->square - before * before) : 0;
+        s->before_square = a >= 0 ? before * before : -BEYOND;
+        s->before_scale = a >= 0 ? 1 / (s->square - before * before) : 1 / BEYOND;
         s->after_scale = z < count ? 1 / (after * after - s->square) : 0;
     }
 }
