@@ -26,8 +26,6 @@ struct hf_hidden_band {
     struct hf_layers_set quads;                     // level 0
     struct hf_hidden_ring level[HF_LAYERS_LEVELS],  // from 1 on
         merged[HF_LAYERS_LEVELS];                   // rows of the level before, merged along rows
-    float *nearest;                                 // least visible radius in each quad; `width` quads per row
-    int width;
     // Blocks; (0, 0) is the band's first, and there are more around it. farthest: largest radius in a block; within:
     // largest radius within the search's reach; needed: how many levels are searched; made: whether each level is made.
     int columns, rows, around, stride;

@@ -298,6 +298,7 @@ static int channels(const struct hf_setup *s, int b)
     case HF_LAYERS_BUF_MIXED_AT:
         return 2;
     case HF_LAYERS_BUF_QUADS_AT:
+        return l->levels ? 3 : 0;
     case HF_LAYERS_BUF_HIDDEN_AT:
     case HF_LAYERS_BUF_BEYOND_AT:
         return l->levels ? 2 : 0;

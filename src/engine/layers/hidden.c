@@ -57,23 +57,36 @@ static void row_of(const struct hf_frame *f, int colour, int at, int x, int y, f
     row[5] = hf_at(&f->buf[at], 1, x, y);
 }
 
+// The farthest sample of n quads, and the radius of the nearest that hides.
+static void quads_of(const struct hf_frame *f, float *const seen[2][6], float *const mixed[2][6], int n,
+                     float *const out[6], float *nearest, int vectors)
+{
+    const float *radius[4] = {seen[0][5], seen[1][5], mixed[0][5], mixed[1][5]},
+                *weight[4] = {seen[0][4], seen[1][4], mixed[0][4], mixed[1][4]};
+    const struct hf_layers_kernels *k = hf_layers_kernels(f);
+    const int channels = hf_layers(f->s)->channels;
+    (vectors ? k->quads : hf_layers_quads_c)((const float *const(*)[6])seen, (const float *const(*)[6])mixed, channels,
+                                             n, out);
+    (vectors ? k->nearest : hf_layers_nearest_c)(radius, weight, n, nearest);
+}
+
 void hf_layers_quads_pass(const struct hf_frame *f, struct hf_rect r)
 {
-    const int channels = hf_layers(f->s)->channels, n = hf_min(r.x1, f->s->width / 2) - r.x0;
+    const int n = hf_min(r.x1, f->s->width / 2) - r.x0;
     for (int y = r.y0; y < r.y1; y++) {
         float *seen[2][6] = {{NULL}}, *mixed[2][6] = {{NULL}}, *out[6] = {NULL};
+        float *nearest = hf_at(&f->buf[HF_LAYERS_BUF_QUADS_AT], 2, r.x0, y);
         for (int i = 0; i < 2; i++) {
             const int py = hf_min(2 * y + i, f->s->height - 1);
             row_of(f, HF_LAYERS_BUF_SEEN, HF_LAYERS_BUF_SEEN_AT, 2 * r.x0, py, seen[i]);
             row_of(f, HF_LAYERS_BUF_MIXED, HF_LAYERS_BUF_MIXED_AT, 2 * r.x0, py, mixed[i]);
         }
         row_of(f, HF_LAYERS_BUF_QUADS, HF_LAYERS_BUF_QUADS_AT, r.x0, y, out);
-        hf_layers_kernels(f)->quads((const float *const(*)[6])seen, (const float *const(*)[6])mixed, channels, n, out);
+        quads_of(f, seen, mixed, n, out, nearest, 1);
         if (r.x0 + n == r.x1)
             continue;
         // At an odd width the last pixel is paired with itself.
-        float pair[2][2][6][2];
-        const float *one[2][2][6];
+        float pair[2][2][6][2], *one[2][2][6];
         for (int i = 0; i < 24; i++) {
             const float *in = i < 12 ? seen[i / 6 % 2][i % 6] : mixed[i / 6 % 2][i % 6];
             float *to = pair[i / 12][i / 6 % 2][i % 6];
@@ -82,7 +95,7 @@ void hf_layers_quads_pass(const struct hf_frame *f, struct hf_rect r)
         }
         for (int c = 0; c < 6; c++)
             out[c] = out[c] ? out[c] + n : NULL;
-        hf_layers_quads_c(one[0], one[1], channels, 1, out);
+        quads_of(f, one[0], one[1], 1, out, nearest + n, 0);
     }
 }
 

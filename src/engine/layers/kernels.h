@@ -196,7 +196,8 @@ static inline const struct hf_layers_kernels *hf_layers_kernels(const struct hf_
     return f->kernels;
 }
 
-// The engine's buffers. Those named AT hold weight and radius; SEEN_AT also holds the share.
+// The engine's buffers. Those named AT hold weight and radius; SEEN_AT also holds the share, QUADS_AT the nearest radius
+// that hides.
 enum {
     HF_LAYERS_BUF_COLOUR,
     HF_LAYERS_BUF_RADIUS,

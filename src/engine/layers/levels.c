@@ -63,8 +63,7 @@ size_t hf_hidden_band_floats(const struct hf_layers *l, int width, int height)
     size_t rows = 0;
     for (int j = 1; j < l->levels; j++)
         rows += (size_t)(level_rows(l) + merged_rows(j));
-    return rows * hf_hidden_row_floats(l, width) + (size_t)blocks_of(width) * HF_HIDDEN_BLOCK * (size_t)height +
-           5 * block_count(l, width, height);
+    return rows * hf_hidden_row_floats(l, width) + 5 * block_count(l, width, height);
 }
 
 static void place_blocks(struct hf_hidden_band *b, float **memory)
@@ -75,17 +74,15 @@ static void place_blocks(struct hf_hidden_band *b, float **memory)
     b->rows = blocks_of(height);
     b->around = blocks_of(b->reach);
     b->stride = b->columns + 2 * b->around;
-    b->width = b->columns * HF_HIDDEN_BLOCK;
     const ptrdiff_t first = b->around * b->stride + b->around;
-    b->nearest = *memory;
-    b->farthest = b->nearest + (size_t)b->width * (size_t)height + first;
+    b->farthest = *memory + first;
     b->within = b->farthest + count;
     uint8_t *bytes = (uint8_t *)(b->within - first + count);
     b->needed = bytes + first;
     b->wide = b->needed + count;
     for (int j = 0; j < HF_LAYERS_LEVELS; j++)
         b->made[j] = b->wide + (size_t)(j + 1) * count;
-    *memory += (size_t)b->width * (size_t)height + 5 * count;
+    *memory += 5 * count;
 }
 
 struct hf_layers_range hf_hidden_range(const struct hf_hidden_band *b, const float *radius, const float *weight,
@@ -112,16 +109,11 @@ static void spread(const struct hf_hidden_band *b, int least, int by, uint8_t *o
                 out[y * b->stride + x] |= b->wide[i * b->stride + x];
 }
 
-// Find the nearest visible radius of each quad, and the farthest radius within each block's reach.
+// Find the farthest radius within each block's reach.
 static void find_farthest(struct hf_hidden_band *b)
 {
     const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
     const struct hf_rect r = {b->r.x0 - b->reach, b->r.y0 - b->reach, b->r.x1 + b->reach, b->r.y1 + b->reach};
-    for (int y = b->r.y0; y < b->r.y1 && !hf_stopped(b->f->s->stop); y++) {
-        const float *radius[4], *weight[4];
-        hf_layers_quad_rows(b->f, b->r.x0, y, radius, weight);
-        hf_layers_kernels(b->f)->nearest(radius, weight, b->r.x1 - b->r.x0, b->nearest + (y - b->r.y0) * b->width);
-    }
     for (int y = -b->around; y < b->rows + b->around && !hf_stopped(b->f->s->stop); y++)
         for (int x = -b->around; x < b->columns + b->around; x++) {
             const int x0 = hf_max(b->r.x0 + x * HF_HIDDEN_BLOCK, r.x0),
@@ -153,13 +145,14 @@ static void find_farthest(struct hf_hidden_band *b)
 // nothing.
 static void find_needed(struct hf_hidden_band *b)
 {
+    const struct hf_buf *at = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
     for (int y = 0; y < b->rows && !hf_stopped(b->f->s->stop); y++)
         for (int x = 0; x < b->columns; x++) {
             const int n = hf_min(b->r.x1 - b->r.x0 - x * HF_HIDDEN_BLOCK, HF_HIDDEN_BLOCK),
                       rows = hf_min(b->r.y1 - b->r.y0 - y * HF_HIDDEN_BLOCK, HF_HIDDEN_BLOCK);
-            const float *nearest = b->nearest + y * HF_HIDDEN_BLOCK * b->width + x * HF_HIDDEN_BLOCK;
+            const float *nearest = hf_at(at, 2, b->r.x0 + x * HF_HIDDEN_BLOCK, b->r.y0 + y * HF_HIDDEN_BLOCK);
             // Rounding of the means is allowed for.
-            const float low = hf_hidden_range(b, nearest, NULL, b->width, n, rows).low;
+            const float low = hf_hidden_range(b, nearest, NULL, at->stride, n, rows).low;
             const float behind = b->within[y * b->stride + x] - low + HF_HIDDEN_ROUNDED;
             uint8_t *needed = &b->needed[y * b->stride + x];
             for (*needed = behind > 1; *needed && *needed < b->l->levels && behind > hf_layers_level_from(*needed);)

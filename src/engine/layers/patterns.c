@@ -133,25 +133,18 @@ static int begin_row(const struct band *b, int y)
     const int x0 = hf_max(b->region.x0, 0), n = hf_min(b->region.x1, f->s->half_width) - x0;
     const size_t bytes = sizeof(float) * (size_t)n;
     const ptrdiff_t at = y * v->set.stride + x0;
-    float nearest[LANES];
     int any = 0;
     for (int c = 0; c < b->channels; c++)
         memcpy(v->set.colour[c] + at, hf_at(&f->buf[HF_LAYERS_BUF_QUADS], c, x0, y), bytes);
     memcpy(v->set.weight + at, hf_at(quads, 0, x0, y), bytes);
     memcpy(v->set.radius + at, hf_at(quads, 1, x0, y), bytes);
     const float *hidden = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 0, x0, y),
-                *radius = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, x0, y);
-    for (int x = 0; x < n; x += LANES) {
-        const int count = hf_min(n - x, LANES);
-        const float *front[4], *weight[4];
-        hf_layers_quad_rows(f, x0 + x, y, front, weight);
-        hf_layers_kernels(f)->nearest(front, weight, count, nearest);
-        for (int i = 0; i < count; i++) {
-            const int some = hidden[x + i] > 0;
-            v->place[at + x + i] = some ? radius[x + i] : 0;
-            v->nearest[at + x + i] = some ? nearest[i] : HUGE_VALF;
-            any |= some;
-        }
+                *radius = hf_at(&f->buf[HF_LAYERS_BUF_HIDDEN_AT], 1, x0, y), *nearest = hf_at(quads, 2, x0, y);
+    for (int x = 0; x < n; x++) {
+        const int some = hidden[x] > 0;
+        v->place[at + x] = some ? radius[x] : 0;
+        v->nearest[at + x] = some ? nearest[x] : HUGE_VALF;
+        any |= some;
     }
     return any;
 }

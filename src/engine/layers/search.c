@@ -267,8 +267,8 @@ static void search_row(struct search *s, int y)
     const struct hf_hidden_band *b = &s->b;
     uint8_t *first = needed_of(s, 0, y), *second = needed_of(s, 1, y);
     place_taps(s, y);
-    find_row(s, b->nearest + (y - b->r.y0) * b->width, b->needed + (y - b->r.y0) / HF_HIDDEN_BLOCK * b->stride, y,
-             first);
+    find_row(s, hf_at(&b->f->buf[HF_LAYERS_BUF_QUADS_AT], 2, b->r.x0, y),
+             b->needed + (y - b->r.y0) / HF_HIDDEN_BLOCK * b->stride, y, first);
     look_behind(s, first);
     smooth_along(s, 0, y);
     find_row(s, s->behind, first, y, second);
@@ -285,7 +285,7 @@ static void begin(struct search *s, float *memory)
     for (int i = 0; i < 2; i++)
         s->along[i] = hf_hidden_ring(b, HF_LAYERS_TAPS, &memory);
     s->behind = memory;
-    s->needed[0] = (uint8_t *)(memory + b->width);
+    s->needed[0] = (uint8_t *)(memory + b->columns * HF_HIDDEN_BLOCK);
     s->needed[1] = s->needed[0] + HF_LAYERS_TAPS * b->columns;
     make_lines(s);
     make_taps(s);
