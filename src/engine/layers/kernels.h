@@ -227,7 +227,9 @@ struct hf_layers_any {
 };
 // Note the radii and slices of the samples that a cell has made, tile by tile.
 void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r, const struct hf_layers_any *any);
-void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r);
+// Likewise for hidden samples. some: whether each of a row of tiles may have samples, of the first and the second hidden surface;
+// NULL: all may.
+void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r, const uint8_t *const some[2]);
 
 // Of a disc's rows, counted from the outermost inwards: the last that reaches rows from..to around two sources.
 static inline int hf_layers_least_row(int from, int to)

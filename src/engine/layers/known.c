@@ -341,7 +341,7 @@ void hf_layers_known_pass(const struct hf_frame *f, struct hf_rect r)
     for (int y = 2 * r.y0; y < hf_min(2 * r.y1, f->s->height) && !hf_stopped(f->s->stop); y++)
         make_row(&b, y);
     if (!hf_stopped(f->s->stop))
-        hf_layers_mark_hidden(f, r);
+        hf_layers_mark_hidden(f, r, NULL);
 }
 
 void hf_layers_take_edges(const struct hf_frame *f, struct hf_rect r)

@@ -36,12 +36,13 @@ static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, 
 
 static const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};
 
-// Set the bits of the slices of a tile's samples; returns the range of their radii.
-static struct hf_layers_range mark_tile(const struct hf_frame *f, const struct hf_slice *slice, struct tile t,
+// Set the bits of the slices of a tile's samples, if it may have some; returns the range of their radii.
+static struct hf_layers_range mark_tile(const struct hf_frame *f, const struct hf_slice *slice, struct tile t, int some,
                                         uint64_t *bits)
 {
     struct hf_layers_range range = none;
-    hf_layers_kernels(f)->extremes(t.radius, t.weight, NULL, t.stride, t.n, t.rows, &range);
+    if (some)
+        hf_layers_kernels(f)->extremes(t.radius, t.weight, NULL, t.stride, t.n, t.rows, &range);
     mark_slices(f, slice, hf_layers(f->s)->slices, t, range, bits);
     return range;
 }
@@ -63,10 +64,7 @@ void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r, const struc
             l->seen_range[at] = l->mixed_range[at] = none;
             const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
             mark_slices(f, l->slice, l->slices, s, l->seen_range[at], &l->seen_marks[mark]);
-            if (mixes)
-                l->mixed_range[at] = mark_tile(f, l->slice, m, &l->mixed_marks[mark]);
-            else
-                mark_slices(f, l->slice, l->slices, m, none, &l->mixed_marks[mark]);
+            l->mixed_range[at] = mark_tile(f, l->slice, m, mixes, &l->mixed_marks[mark]);
             mark_slices(f, l->shine, l->shines, tile_of(seen, share ? 2 : 0, x, y, n, rows),
                         bright ? l->seen_range[at] : none, &l->share_marks[at * l->share_words]);
         }
@@ -122,7 +120,7 @@ static void note_crossing(const struct hf_layers *l, const struct tile of[2], co
                           hf_larger(size_of(l, range[0]), size_of(l, range[1])));
 }
 
-void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
+void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r, const uint8_t *const some[2])
 {
     const struct hf_layers *l = hf_layers(f->s);
     const struct hf_buf *hidden = &f->buf[l->known ? HF_LAYERS_BUF_SECOND_AT : HF_LAYERS_BUF_HIDDEN_AT],
@@ -135,8 +133,10 @@ void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r)
             const int x = tx * size << fine, y = ty * size << fine, mark = (ty * l->columns + tx) * l->words;
             const int n = hf_min(size << fine, width - x), rows = hf_min(size << fine, height - y);
             const struct tile of[2] = {tile_of(hidden, 0, x, y, n, rows), tile_of(beyond, 0, x, y, n, rows)};
-            const struct hf_layers_range range[2] = {mark_tile(f, slice, of[0], &l->hidden_marks[mark]),
-                                                     mark_tile(f, slice, of[1], &l->beyond_marks[mark])};
+            const int i = tx - r.x0 / size;
+            const struct hf_layers_range range[2] = {
+                mark_tile(f, slice, of[0], !some || some[0][i], &l->hidden_marks[mark]),
+                mark_tile(f, slice, of[1], !some || some[1][i], &l->beyond_marks[mark])};
             if (l->set.views)
                 note_crossing(l, of, range, ty * l->columns + tx);
         }

@@ -12,10 +12,10 @@ struct search {
     struct hf_hidden_band b;
     struct hf_hidden_line line[HF_LAYERS_LINES];
     struct hf_hidden_tap tap[HF_LAYERS_LEVELS][9];  // with the samples of a row
-    // Of the first hidden surface, and of the one behind it: rows that are smoothed along themselves, and how many levels
-    // each of a row's blocks has searched.
+    // Of the first hidden surface, and of the one behind it: rows that are smoothed along themselves, how many levels each
+    // block has searched in each row, and which tiles of a row of tiles may have something.
     struct hf_hidden_ring along[2];
-    uint8_t *needed[2];
+    uint8_t *needed[2], *some[2];
     struct hf_hidden_ring found;  // a row that is not smoothed yet
     float *behind;                // behind which radius the second surface lies, of the quads of a row
 };
@@ -25,7 +25,7 @@ size_t hf_layers_hidden_floats(const struct hf_layers *l, int width, int height)
     const size_t columns = ((size_t)width + HF_HIDDEN_BLOCK - 1) / HF_HIDDEN_BLOCK;
     return hf_hidden_band_floats(l, width, height + 2 * HF_LAYERS_SMOOTH) +
            (2 * HF_LAYERS_TAPS + 1) * hf_hidden_row_floats(l, width) + columns * HF_HIDDEN_BLOCK +
-           (2 * HF_LAYERS_TAPS * columns + sizeof(float) - 1) / sizeof(float) + HF_HIDDEN_PAD;
+           2 * columns * ((size_t)height + 2 * HF_LAYERS_SMOOTH + 2) / sizeof(float) + HF_HIDDEN_PAD;
 }
 
 // The lines through a sample of level 0: row, column and both diagonals, no longer than the levels' reach.
@@ -95,7 +95,7 @@ static int next_run(const struct hf_hidden_band *b, const uint8_t *needed, struc
 // How many levels the blocks of a row have searched for the first or second surface.
 static uint8_t *needed_of(const struct search *s, int second, int y)
 {
-    return s->needed[second] + hf_hidden_ring_row(&s->along[second], y) * s->b.columns;
+    return s->needed[second] + (y - s->b.r.y0) * s->b.columns;
 }
 
 // The farthest radius within reach of blocks in row y.
@@ -276,6 +276,22 @@ static void search_row(struct search *s, int y)
     smooth_along(s, 1, y);
 }
 
+// Finish row y of the band's own rows r; after the last row of a row of tiles, note what these have.
+static void finish_row(const struct search *s, struct hf_rect r, int y)
+{
+    const struct hf_hidden_band *b = &s->b;
+    const int size = HF_LAYERS_TILE / 2, top = y / size * size;
+    for (int i = 0; i < 2; i++) {
+        smooth_down(s, i, y);
+        if (y == top)
+            memset(s->some[i], 0, 2 * (size_t)b->columns);
+        for (int tile = 0; tile < 2 * b->columns; tile++)
+            s->some[i][tile] |= needed_of(s, i, y)[tile * size / HF_HIDDEN_BLOCK];
+    }
+    if (!b->l->known && (y == top + size - 1 || y == r.y1 - 1))
+        hf_layers_mark_hidden(b->f, (struct hf_rect){r.x0, top, r.x1, y + 1}, (const uint8_t *const *)s->some);
+}
+
 // Place what a search needs in memory, behind its band.
 static void begin(struct search *s, float *memory)
 {
@@ -285,8 +301,12 @@ static void begin(struct search *s, float *memory)
     for (int i = 0; i < 2; i++)
         s->along[i] = hf_hidden_ring(b, HF_LAYERS_TAPS, &memory);
     s->behind = memory;
-    s->needed[0] = (uint8_t *)(memory + b->columns * HF_HIDDEN_BLOCK);
-    s->needed[1] = s->needed[0] + HF_LAYERS_TAPS * b->columns;
+    uint8_t *bytes = (uint8_t *)(memory + b->columns * HF_HIDDEN_BLOCK);
+    for (int i = 0; i < 2; i++) {
+        s->needed[i] = bytes;
+        s->some[i] = bytes + (b->r.y1 - b->r.y0) * b->columns;
+        bytes = s->some[i] + 2 * b->columns;
+    }
     make_lines(s);
     make_taps(s);
 }
@@ -322,8 +342,8 @@ static void find_hidden(const struct hf_frame *f, struct hf_rect r)
                 hf_hidden_advance(b, made++);
             search_row(&s, y);
         }
-        for (int i = 0; i < 2 && y - HF_LAYERS_SMOOTH >= r.y0; i++)
-            smooth_down(&s, i, y - HF_LAYERS_SMOOTH);
+        if (y - HF_LAYERS_SMOOTH >= r.y0)
+            finish_row(&s, r, y - HF_LAYERS_SMOOTH);
     }
     if (l.channels == channels)
         return;
@@ -343,6 +363,4 @@ void hf_layers_hidden_pass(const struct hf_frame *f, struct hf_rect r)
         hf_layers_set_colours(f, HF_LAYERS_BUF_HIDDEN, r, 0);
         hf_layers_set_colours(f, HF_LAYERS_BUF_BEYOND, r, 0);
     }
-    if (!hf_stopped(f->s->stop) && !hf_layers(f->s)->known)
-        hf_layers_mark_hidden(f, r);
 }
