@@ -247,6 +247,36 @@ static void in_the_dark(struct hf_context *c, double light, double size, float b
     picture_free(&radius);
 }
 
+// A lone lamp, one depth everywhere, at radii around those that a slice of full resolution shares with the next: the lamp's own
+// surface hides none of its light. Sums of WIDTH * HEIGHT floats lose less than WIDTH * HEIGHT / 2^24 of them.
+static void alone(struct hf_context *c, enum hf_layers_quality quality)
+{
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radius = picture_new(WIDTH, HEIGHT, 1);
+    struct hf_params p = scene_params();
+    const double light = 1000;
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        colour.plane[i / (WIDTH * HEIGHT)][i % (WIDTH * HEIGHT)] = (float)WALL;
+    for (int i = 0; i < 3; i++)
+        colour.plane[i][48 * WIDTH + 101] = (float)light;
+    p.engine = HF_ENGINE_LAYERS;
+    p.max_radius = HF_DERIVE;
+    p.layers.quality = quality;
+    for (double r = 3.9; r < 6.5; r += 0.043) {
+        for (int k = 0; k < WIDTH * HEIGHT; k++)
+            radius.plane[0][k] = (float)r;
+        const struct hf_depth depth = picture_radii(&radius);
+        struct picture out = render(c, &colour, &depth, &p);
+        double got = 0;
+        for (int k = 0; k < WIDTH * HEIGHT; k++)
+            got += out.plane[1][k] - WALL;
+        CHECK_MSG(fabs(got / (light - WALL) - 1) <= WIDTH * HEIGHT * 0x1p-24,
+                  "quality %d, radius %g: %.4f of it arrives", (int)quality, r, got / (light - WALL));
+        picture_free(&out);
+    }
+    picture_free(&colour);
+    picture_free(&radius);
+}
+
 int main(void)
 {
     static const double lights[] = {1.5, 30, 1000, 1e4};
@@ -264,6 +294,8 @@ int main(void)
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 6; k++)
             in_the_dark(c, lights[i], 0.75 + 0.5 * (k % 3), k < 3 ? 16 : 12);
+    for (int quality = HF_LAYERS_STANDARD; quality <= HF_LAYERS_BEST; quality++)
+        alone(c, (enum hf_layers_quality)quality);
     hf_close(&c);
     return check_report();
 }

@@ -31,6 +31,16 @@ static int is_left_out(const struct frame *f, int n, double before, double r)
     return n % 2 && layers_reference_level_of(f, before) > 1 && next_radius(f, r) - before <= r / 8;
 }
 
+// Behind the focus, how much of a highlight is drawn as one: nothing until an eighth of the way from the last slice of the
+// middle stack to the next, by the square of the radius; all from a quarter on.
+double layers_reference_shared(const struct frame *f, double r)
+{
+    double from = 0, to = next_radius(f, 0);
+    for (; layers_reference_level_of(f, to) == 0; to = next_radius(f, to))
+        from = to;
+    return r > 0 ? fmin(fmax(8 * (r * r - from * from) / (to * to - from * from) - 1, 0), 1) : 1;
+}
+
 double layers_reference_part_of(const struct slice *s, double r)
 {
     if (r <= s->before || r >= s->after)
@@ -309,12 +319,12 @@ static void cover(const struct frame *f, const struct slice *last, struct grid *
         for (int x = far->x0; x < far->x1; x++)
             at(lift, x, y)[0] = 1;
     for (int hidden = 0; hidden <= (layers_reference_levels(f) > 0) && isfinite(last->after); hidden++) {
-        const struct slice s = {last->own, sqrt((3 * from + to) / 4), last->after, {0}};
+        const struct slice s = {last->own, sqrt((7 * from + to) / 8), last->after, {0}};
         struct grid sums = draw_at(f, &s, last->own, 1, hidden ? BEHIND : SEEN, 0);
         for (int y = far->y0; y < far->y1; y++)
             for (int x = far->x0; x < far->x1; x++) {
                 double *v = at(far, x, y);
-                const double left = fmax(1 - 0.75 * edge(&sums, x, y)[4], 0);
+                const double left = fmax(1 - 0.875 * edge(&sums, x, y)[4], 0);
                 v[OPEN] *= left;
                 v[BEHIND_OPEN] *= hidden ? left : 1;
                 at(lift, x, y)[0] = 1 / fmax(v[OPEN], 1.0 / 16);

@@ -122,6 +122,7 @@ int layers_reference_levels(const struct frame *f);
 
 // (layers_reference.c)
 int layers_reference_level_of(const struct frame *f, double r);
+double layers_reference_shared(const struct frame *f, double r);
 double layers_reference_part_of(const struct slice *s, double r);
 // Add the samples of a set that belong to a slice to the sources of a level, `apart` times half the resolution of theirs. light:
 // without their shares. quads: the samples of quads, as those of pixels.

@@ -238,6 +238,7 @@ static void highlight(struct frame *f, int x, int y)
         s[1][i] = kept;
     }
     s[0][SHARE] = light[more] > 0 ? share[more] * (1 - light[!more] / light[more]) : 0;
+    s[0][SHARE] *= layers_reference_shared(f, s[0][RADIUS]);
 }
 
 // ---- hidden samples ----

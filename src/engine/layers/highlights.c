@@ -229,6 +229,17 @@ void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct
     }
 }
 
+// Reduce the shares of a row of samples behind the last slice of full resolution. Such a sample lies partly in that slice, and its
+// part there must not cover the rest of it: the far stack is divided by what a cover leaves open (make_covers in slices.c). But
+// nearest to the slice a cover is less than the sample's part, or it would cover at once. There a lamp's share would lose up to a
+// ninth of its light to the lamp itself, so it is drawn as an ordinary sample, which loses none.
+static void begin_shares(const struct hf_layers *l, const float *radius, const uint8_t *bright, int n, float *share)
+{
+    for (int x = 0; l->last >= 0 && x < n; x++)
+        if (bright[x / HF_LAYERS_TILE] && share[x] > 0 && radius[x] > 0)
+            share[x] *= hf_saturate((radius[x] * radius[x] - l->shares_from) * l->shares_scale);
+}
+
 void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch,
                           const struct hf_layers_any *any)
 {
@@ -250,5 +261,6 @@ void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct 
         }
         hf_layers_kernels(f)->shares(seen, mixed, any->mixed, around, channels == 4 ? covered : NULL, n,
                                      hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, x0, py), any->bright);
+        begin_shares(hf_layers(f->s), seen[5], any->bright, n, hf_at(&f->buf[HF_LAYERS_BUF_SEEN_AT], 2, x0, py));
     }
 }

@@ -34,7 +34,7 @@ static int is_left_out(const struct hf_layers_settings *set, int n, float before
 }
 
 // The largest part of a sample that a cover draws: that of the slice it stands for, at the cover's radius.
-#define HF_LAYERS_COVER 0.75f
+#define HF_LAYERS_COVER 0.875f
 
 // Rows on one side of a disc, including the middle one.
 static int disc_rows(double r)
@@ -188,6 +188,9 @@ static struct hf_disc_row *make_covers(struct hf_layers *l, int group, int middl
         c->radius = sqrtf(c->square);
         c->before_scale = 1 / (c->square - from);
         c->after_scale = 1 / (to - c->square);
+        // A sample's light counts as a highlight where the cover is the slice's whole part of it.
+        l->shares_from = c->square;
+        l->shares_scale = 1 / (c->square - from);
     }
     return row;
 }
