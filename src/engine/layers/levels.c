@@ -243,17 +243,9 @@ void hf_hidden_level(const struct hf_hidden_band *b, int level, int x, int y, fl
     hf_hidden_planes(&set, b->l->channels, x, level_row(b, level, y), out);
 }
 
-int hf_hidden_first_row(const struct hf_hidden_band *b)
-{
-    return b->r.y0 - ((1 << b->l->levels) - 1);
-}
-
-int hf_hidden_last_row(const struct hf_hidden_band *b, int y)
-{
-    return y + ((1 << b->l->levels) - 1);
-}
-
-void hf_hidden_advance(const struct hf_hidden_band *b, int y)
+// All levels take up row y of level 0: each merges the row that the one before it has just made along itself, and then
+// those three rows that are now complete.
+static void take_up(const struct hf_hidden_band *b, int y)
 {
     const int levels = b->l->levels, top = b->r.y0, low = b->r.y1;
     for (int j = 1; j < levels; j++) {
@@ -280,6 +272,18 @@ void hf_hidden_advance(const struct hf_hidden_band *b, int y)
     }
 }
 
+// How many rows of level 0 the search of a row needs below it, and the levels need above the first.
+static int lag(const struct hf_hidden_band *b)
+{
+    return (1 << b->l->levels) - 1;
+}
+
+void hf_hidden_advance(struct hf_hidden_band *b, int y)
+{
+    for (; b->next <= y + lag(b) && !hf_stopped(b->f->s->stop); b->next++)
+        take_up(b, b->next);
+}
+
 // Mark the blocks in which each level is read.
 static void find_made(struct hf_hidden_band *b)
 {
@@ -297,6 +301,7 @@ float *hf_hidden_begin(struct hf_hidden_band *b, float *memory)
         b->level[j] = hf_hidden_ring(b, level_rows(b->l), &memory);
         b->merged[j] = hf_hidden_ring(b, merged_rows(j), &memory);
     }
+    b->next = b->r.y0 - lag(b);
     place_blocks(b, &memory);
     find_farthest(b);
     find_needed(b);

@@ -335,11 +335,9 @@ static void find_hidden(const struct hf_frame *f, struct hf_rect r)
     b->quads = (struct hf_layers_set){.weight = at->ch[0], .radius = at->ch[1], .stride = colour->stride};
     memcpy(b->quads.colour, colour->ch, sizeof colour->ch);
     begin(&s, f->work);
-    int made = hf_hidden_first_row(b);
     for (int y = b->r.y0; y < r.y1 + HF_LAYERS_SMOOTH && !hf_stopped(f->s->stop); y++) {
         if (y < b->r.y1) {
-            while (made <= hf_hidden_last_row(b, y))
-                hf_hidden_advance(b, made++);
+            hf_hidden_advance(b, y);
             search_row(&s, y);
         }
         if (y - HF_LAYERS_SMOOTH >= r.y0)
