@@ -69,6 +69,13 @@ static float of_part(struct world *w, int b, int c, int x, int y, float v)
     return b == HF_BUF_COC4 ? fmaxf(v, part) : part > 0 ? v : 0;
 }
 
+// Buffers of the whole frame are 0 beyond it, where the engine says so.
+static int is_zero(const struct world *w, int b, int x, int y)
+{
+    const int inside = x >= 0 && y >= 0 && x < w->setup.half_width && y < w->setup.half_height;
+    return w->engine->plan.zero_beyond && w->engine->bufs[b].frame && b != HF_BUF_COC && !inside;
+}
+
 static void fill_buf(struct world *w, int b, struct hf_rect r)
 {
     const int mode = rng_int(&w->rng, 0, rng_one_in(&w->rng, 2) ? COC_MODES - 1 : COC_EVERYWHERE);
@@ -78,8 +85,8 @@ static void fill_buf(struct world *w, int b, struct hf_rect r)
         for (int y = r.y0; y < r.y1; y++)
             for (int x = r.x0; x < r.x1; x++) {
                 const int patch = pattern >> ((x - r.x0) / size + 3 * ((y - r.y0) / 2) + 5 * (c / 2)) % 32 & 1;
-                world_put(w, b, c, x, y,
-                          of_part(w, b, c, x, y, is_coc(w, b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y)));
+                const float v = is_coc(w, b) ? coc_value(w, mode, patch) : buffer_value(w, b, x, y);
+                world_put(w, b, c, x, y, is_zero(w, b, x, y) ? 0 : of_part(w, b, c, x, y, v));
             }
 }
 
