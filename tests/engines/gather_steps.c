@@ -82,13 +82,48 @@ static void same_bits(enum hf_isa isa, struct hf_context *plain)
     }
 }
 
+// A lamp in focus beside what is near: the smallest level's sample of it counts (radius / 2)^6 times for what is wholly near. And
+// what it adds stays in proportion to it.
+static void bright_lamp(enum hf_isa isa, float radius)
+{
+    const float lamp = 0x1p100f;
+    struct hf_context *c = context_new(isa, 2, 0, 0);
+    struct picture colour = picture_new(WIDTH, HEIGHT, 3), radii = picture_new(WIDTH, HEIGHT, 1);
+    struct hf_params p = steps_params();
+    p.max_radius = radius;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            radii.plane[0][y * WIDTH + x] = x < WIDTH / 2 ? -radius : 0;
+    for (int k = 0; k < 3; k++)
+        picture_fill(&colour, k, 0);
+    colour.plane[1][HEIGHT / 2 * WIDTH + WIDTH / 2] = lamp;
+    const struct hf_depth depth = picture_radii(&radii);
+    struct picture out = render(c, &colour, &depth, &p);
+    colour.plane[1][HEIGHT / 2 * WIDTH + WIDTH / 2] = 1;
+    struct picture dim = render(c, &colour, &depth, &p);
+    int off = 0;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < WIDTH * HEIGHT; i++)
+            off += out.plane[k][i] != lamp * dim.plane[k][i];  // also NaN
+    CHECK_MSG(!off, "%s: radius %g: of %d samples, %d are not 2^100 times those of a lamp of 1", hf_isa_name(isa),
+              (double)radius, 3 * WIDTH * HEIGHT, off);
+    picture_free(&out);
+    picture_free(&dim);
+    picture_free(&colour);
+    picture_free(&radii);
+    hf_close(&c);
+}
+
 int main(void)
 {
     struct hf_context *plain = context_new(HF_ISA_SCALAR, 2, 0, 0);
     against_double(plain);
     for (int isa = HF_ISA_SCALAR; isa <= HF_ISA_NEON; isa++)
-        if (hf_isa_available((enum hf_isa)isa))
+        if (hf_isa_available((enum hf_isa)isa)) {
             same_bits((enum hf_isa)isa, plain);
+            bright_lamp((enum hf_isa)isa, 110);
+            bright_lamp((enum hf_isa)isa, 2048);
+        }
     hf_close(&plain);
     return check_report();
 }

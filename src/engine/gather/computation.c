@@ -252,12 +252,12 @@ static float weighed(float colour, float weight, float counts, int karis)
     return !karis ? colour : weight > 0 ? colour / weight * counts : 0;
 }
 
-// The weight of the disocclusion fill, 0 to 1: what the near field leaves free, over `see`, which counts the free part
-// once for each level that sees it.
-static float free_part(float cover, float see)
+// The weight of the disocclusion fill, such that a sample that counts once has a weight from 0 to 1: what the near field leaves
+// free, over `see`, which counts the free part once for each level that sees it.
+static float free_part(float cover, float see, float once)
 {
-    const float room = 1 - cover > 0 ? 1 - cover : 0, part = room / (see > FLT_MIN ? see : FLT_MIN);
-    return part < 1 ? part : 1;
+    const float room = 1 - cover > 0 ? 1 - cover : 0, part = room / (see > FLT_MIN ? see : FLT_MIN), most = 1 / once;
+    return part < most ? part : most;
 }
 
 static void finish_levels(const struct hf_frame *f, int x, int y, const struct sums *near, const struct sums *behind)
@@ -265,7 +265,7 @@ static void finish_levels(const struct hf_frame *f, int x, int y, const struct s
     const int karis = hf_fields(f->s)->karis;
     const float cover = *hf_at(near->weight[1], near->channel[1], x, y);
     const float see = *hf_at(behind->weight[1], behind->channel[1], x, y), most = cover > 1 ? cover : 1;
-    const float part = free_part(cover, see), all = cover + part * see;
+    const float part = free_part(cover, see, hf_gather(f->s)->once), all = cover + part * see;
     // A blur so small that its weights are 0 hides nothing.
     const float m = all > 0 ? hidden(f, x, y) : 0;
     for (int c = 0; c < f->s->channels; c++) {

@@ -38,8 +38,9 @@ enum { HF_AREA_NEAR, HF_AREA_FAR, HF_AREA_NEAR_MOST, HF_AREA_FAR_OF_LIGHT };
 
 // A kernel as large as some pixels' blur. CoC is relative to a radius no smaller than the frame's largest (engine.c).
 struct hf_level {
-    float coc;      // the CoC of pixels as blurred as this
-    float counts;   // of what near pixels hide: what a sample of this level counts, for pixels whose CoC is 1
+    float coc;  // the CoC of pixels as blurred as this
+    float
+        counts;  // of what near pixels hide: what a sample of this level counts, for pixels whose CoC is 1, times hf_gather.once
     float to_next;  // 1 / (coc - that of the next one)
     float area;     // coc^2, and as for coc:
     float area_to_next;
@@ -74,7 +75,8 @@ struct hf_levels {
 struct hf_gather {
     struct hf_fields fields;
     struct hf_levels levels[3];  // near, far, and of what near pixels hide; CoC there is near CoC
-    int many;                    // fields have levels, be it one, else a kernel
+    float once;  // what a sample that counts once adds to what near pixels hide: 1, or a smaller power of two
+    int many;    // fields have levels, be it one, else a kernel
     int leaves;  // there are near and far levels: the disocclusion fill leaves far samples to the far ones
     int lights;  // measured: how far apart what is beside a light is looked at; else 0
 };
@@ -110,7 +112,7 @@ static inline float hf_level_share(const struct hf_levels *l, int i, float coc)
 // radius over the level's. A level is a mean over its area, so a sample counts by the inverse of its distance to the eighth:
 // what is hidden is most often what is seen nearest to it. (To the fourth, `fence` had 31.9 dB instead of 32.7.) In its own
 // level a sample counts once. Where all count less, farther away than the blur is wide, they fade out.
-// With one kernel all count alike.
+// With one kernel all count alike. All of it is times hf_gather.once.
 static inline float hf_level_near(const struct hf_setup *s, int i, float coc)
 {
     const struct hf_levels *l = hf_gather_behind(s);
@@ -210,5 +212,9 @@ extern const struct hf_engine_def hf_gather_engine;
 
 // Half-resolution colour stays below this, so that no sum of millions passes the largest float.
 #define HF_AREA_LARGEST 0x1p104f
+// The most that a level of what near pixels hide counts: the smallest counts most, the sixth power of the largest radius, 2^60 for
+// one of 1024. What near pixels hide is the difference of three colours, at most 3 x 2^104; all levels together count at most
+// 64 / 63 of the smallest; and in a frame's corner a quarter of a kernel stands for all of it. So sums are at most 2^124.
+#define HF_COUNTS_MOST 0x1p16f
 
 #endif

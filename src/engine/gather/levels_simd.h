@@ -138,23 +138,23 @@ HF_INLINE vf area_weighed(vf colour, const float *weight, vf counts, const int k
 }
 
 // As free_part in computation.c.
-HF_INLINE vf area_free_part(vf cover, vf see)
+HF_INLINE vf area_free_part(vf cover, vf see, vf most)
 {
-    const vf one = vf_set1(1), room = vf_max(vf_sub(one, cover), vf_zero());
-    return vf_min(vf_div(room, vf_max(see, vf_set1(FLT_MIN))), one);
+    const vf room = vf_max(vf_sub(vf_set1(1), cover), vf_zero());
+    return vf_min(vf_div(room, vf_max(see, vf_set1(FLT_MIN))), most);
 }
 
 static void area_finish_row(const struct hf_frame *f, int x0, int n, int y)
 {
     const struct hf_levels *l = hf_gather_levels(f->s, HF_NEAR);
-    const vf one = vf_set1(1);
+    const vf one = vf_set1(1), wholly = vf_set1(1 / hf_gather(f->s)->once);
     const int karis = hf_fields(f->s)->karis;
     const struct area_sums near = area_near_sums(f, x0, y), behind = area_behind_sums(f, x0, y);
     const float *blur = hf_at(&f->buf[HF_BUF_BLUR], 0, x0, y);
     for (int x = 0; x < n; x += VF_N) {
         const vf m = area_hidden(l, blur + x), cover = vf_load(near.weight[1] + x);
         const vf see = vf_load(behind.weight[1] + x), most = vf_max(cover, one);
-        const vf part = area_free_part(cover, see), all = vf_fma(part, see, cover);
+        const vf part = area_free_part(cover, see, wholly), all = vf_fma(part, see, cover);
         const vm hides = vm_and(vf_gt(m, vf_zero()), vf_gt(all, vf_zero()));
         for (int c = 0; c < f->s->channels; c++) {
             const vf own = area_weighed(vf_load(near.colour[c] + x), near.weight[0] + x, cover, karis);
