@@ -17,17 +17,6 @@ static void area_clear_unfilled(const struct hf_frame *f, const struct area_rows
     }
 }
 
-// Add a level's plane to a job, convolved with the taps' tents.
-static void area_level_plane(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
-                             const struct hf_taps *t, struct convolve_job *j, int in, int c, int out)
-{
-    const struct hf_buf *plane = &f->buf[in];
-    if (t->step > 1)
-        area_tents(f, rows, r, t, plane, c);
-    convolve_plane(j, f, r, in, c, out, c);
-    j->in[j->planes - 1] -= (t->step - 1) * (plane->stride + 1);
-}
-
 // A level's planes around r, into its sums.
 static void area_convolve_level(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
                                 const struct hf_taps *t, int leaves)
@@ -36,13 +25,13 @@ static void area_convolve_level(const struct hf_frame *f, const struct area_rows
     fixed_column *column = area_column(t);
     if (column || t->step > 1)
         area_clear_unfilled(f, rows, area_grown(r, t));
-    if (t->step > 1)
-        area_tents_filled(rows, r, t);
     for (int c = 0; c < f->s->channels; c++)
-        area_level_plane(f, rows, r, t, &j, HF_BUF_LEVEL, c, HF_BUF_LEVEL_SUM);
+        convolve_plane(&j, f, r, HF_BUF_LEVEL, c, HF_BUF_LEVEL_SUM, c);
     for (int c = 0; c < 3; c++)
         if (c == 0 || (c == 1 && hf_fields(f->s)->karis) || (c == 2 && leaves))
-            area_level_plane(f, rows, r, t, &j, HF_BUF_LEVEL_WEIGHT, c, HF_BUF_LEVEL_WEIGHT_SUM);
+            convolve_plane(&j, f, r, HF_BUF_LEVEL_WEIGHT, c, HF_BUF_LEVEL_WEIGHT_SUM, c);
+    if (t->step > 1)
+        area_tents(f, rows, r, t, &j);
     convolve_jobs(f, r, t, column, rows->work, &j, 1, NULL);
 }
 

@@ -14,60 +14,99 @@ HF_INLINE vf tent(const float *const *p, int x, const int step)
     return vf_add(vf_add(third, beside), vf_add(inner, inner));
 }
 
-HF_INLINE void tents(const float *const *p, int n, const int step, float *out)
+// Columns x0 to x1 - 1 of a row.
+struct tents_run {
+    int x0, x1;
+};
+
+// 64 blocks of columns have 32 runs at most.
+struct tents_runs {
+    struct tents_run run[32];
+    int count;
+};
+
+// The runs of n columns from x on that have these blocks. More columns than there are bits are one run.
+static void tents_find(uint64_t blocks, int x, int n, struct tents_runs *runs)
 {
-    for (int x = 0; x < n; x += VF_N)
-        vf_store(out + x, tent(p, x, step));
+    const int first = x >> 4, most = ((x + n - 1) >> 4) - first + 1, at = first & 63;
+    runs->count = 0;
+    if (most > 64) {
+        runs->run[runs->count++] = (struct tents_run){0, n};
+        return;
+    }
+    uint64_t left = (blocks >> at | blocks << (-at & 63)) & (~(uint64_t)0 >> (64 - most));
+    while (left) {
+        const uint64_t begins = left & -left,
+                       ends = (left + begins) & ~left;  // the first block, and the one after its run
+        const int x0 = 16 * (first + __builtin_ctzll(begins)) - x;
+        const int x1 = ends ? 16 * (first + __builtin_ctzll(ends)) - x : n;
+        runs->run[runs->count++] = (struct tents_run){hf_max(x0, 0), hf_min(x1, n)};
+        left &= ends ? -ends : 0;
+    }
 }
 
-// n columns of these rows, in y and then in x. out may be the first row.
-HF_INLINE void tents_of_rows(const float *const *rows, int n, const int step, float *out)
+// Between two runs there is a block at least, and all of it is 0: a run's last vector may reach into it.
+HF_INLINE void tents(const float *const *p, const struct tents_runs *runs, const int step, float *out)
+{
+    _Static_assert(VF_N <= 16, "a vector is no wider than a block");
+    for (int i = 0; i < runs->count; i++)
+        for (int x = runs->run[i].x0; x < runs->run[i].x1; x += VF_N)
+            vf_store(out + x, tent(p, x, step));
+}
+
+// These rows, in y and then in x. out may be the first row.
+HF_INLINE void tents_of_rows(const float *const *rows, const struct tents_runs *in_y, const struct tents_runs *in_x,
+                             const int step, float *out)
 {
     const float *columns[HF_MAX_TENT];
     for (int i = 0; i < 2 * step - 1; i++)
         columns[i] = out + i;
-    tents(rows, n, step, out);
-    tents(columns, n - 2 * (step - 1), step, out);
+    tents(rows, in_y, step, out);
+    tents(columns, in_x, step, out);
 }
 
-// Which blocks of a level's rows will hold something when its planes have been convolved: tents reach half a tent up and down, and
-// into the blocks beside.
-static void area_tents_filled(const struct area_rows *rows, struct hf_rect r, const struct hf_taps *t)
+// Row y of a job's planes convolved with the taps' tents: n columns, of which the rows that it reads hold these blocks.
+static void area_tents_row(const struct convolve_job *j, const struct hf_taps *t, int y, int n, uint64_t blocks)
+{
+    const int half = t->step - 1, x = j->x0 - t->rx;
+    struct tents_runs in_y, in_x;
+    tents_find(blocks, x, n, &in_y);
+    tents_find(blocks | blocks >> 1 | blocks << 63, x, n - 2 * half, &in_x);  // values come from the right
+    for (int i = 0; i < j->planes; i++) {
+        const float *from[HF_MAX_TENT];
+        float *first = (float *)j->in[i] + (y - half) * j->in_stride[i] - t->rx;
+        for (int k = 0; k <= 2 * half; k++)
+            from[k] = first + k * j->in_stride[i];
+        if (t->step == 2)
+            tents_of_rows(from, &in_y, &in_x, 2, first);
+        else
+            tents_of_rows(from, &in_y, &in_x, 4, first);
+    }
+}
+
+// A job's planes convolved in place, as far as taps around r reach. What holds nothing is 0, and stays so: tents reach half a tent up
+// and down, and into the blocks beside, and the rows know afterwards what is in them. What belongs to a pixel comes to lie where
+// the first of its tent's values was: half a tent to the left of and above its place.
+static void area_tents(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
+                       const struct hf_taps *t, struct convolve_job *j)
 {
     const int half = t->step - 1;
     struct convolve_row *row = rows->level + (r.y0 - t->ry - rows->y0);
     uint64_t above[HF_MAX_STEP - 1];  // of the rows above the one at hand, as they were
     for (int i = 0; i < half; i++)
         above[i] = (row++)->filled;
-    for (int y = r.y0 - t->ry + half; y < r.y1 + t->ry - half; y++, row++) {
+    for (int y = half - t->ry; y < r.y1 - r.y0 + t->ry - half && !hf_stopped(f->s->stop); y++, row++) {
         uint64_t any = 0, own = row->filled;
         for (int i = 0; i < half; i++)
             any |= above[i] | row[i + 1].filled;
         any |= own;
         row->filled = any | any << 1 | any >> 63 | any >> 1 | any << 63;
+        if (any)
+            area_tents_row(j, t, y, r.x1 - r.x0 + 2 * t->rx, any);
         for (int i = 0; i + 1 < half; i++)
             above[i] = above[i + 1];
         above[half - 1] = own;
     }
-}
-
-// A level's plane convolved in place, as far as taps around r reach; the rows know already what will be in them, and what holds
-// nothing is 0. What belongs to a pixel comes to lie where the first of its tent's values was: half a tent to the left of and above
-// its place.
-static void area_tents(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect r,
-                       const struct hf_taps *t, const struct hf_buf *plane, int c)
-{
-    const int half = t->step - 1, n = r.x1 - r.x0 + 2 * t->rx;
-    for (int y = r.y0 - t->ry + half; y < r.y1 + t->ry - half && !hf_stopped(f->s->stop); y++) {
-        if (!rows->level[y - rows->y0].filled)
-            continue;
-        const float *from[HF_MAX_TENT];
-        float *first = hf_at(plane, c, r.x0 - t->rx, y - half);
-        for (int i = 0; i <= 2 * half; i++)
-            from[i] = first + i * plane->stride;
-        if (t->step == 2)
-            tents_of_rows(from, n, 2, first);
-        else
-            tents_of_rows(from, n, 4, first);
-    }
+    for (int i = 0; i < j->planes; i++)
+        j->in[i] -= half * (j->in_stride[i] + 1);
 }
