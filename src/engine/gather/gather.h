@@ -204,7 +204,7 @@ int hf_area_inside(const struct hf_setup *s, const struct hf_area_kernel *k, int
 // Sums that Computation uses up strip by strip (computation_simd.h): planes, and floats from row to row.
 enum { HF_STRIP_PLANES = 5, HF_STRIP = 112 };
 // What is known of a row of levels (levels_planes_simd.h), in floats.
-enum { HF_ROW_FLOATS = 8 };
+enum { HF_ROW_FLOATS = HF_MAX_LEVELS + 8 };
 
 struct hf_reach hf_gather_halo(const struct hf_setup *s, int halo);
 

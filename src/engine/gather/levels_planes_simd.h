@@ -108,39 +108,41 @@ static void area_span_join(struct area_span *all, struct area_span s)
     all->most = s.most > all->most ? s.most : all->most;
 }
 
+// Of a row, by level: which groups of columns can have a sample of it, bits from the first group on.
+struct area_groups {
+    uint32_t level[HF_MAX_LEVELS];
+};
+enum { AREA_GROUPS = 32, AREA_GROUP = 16 };
+
+// Columns x0 to x1 - 1.
+struct area_columns {
+    int x0, x1;
+};
+
 // What is known of rows, wherever taps reach: most samples are in two levels of many, so most levels hold little.
 struct area_rows {
     int y0;                      // row of the first
     struct convolve_row *level;  // of the level at hand
-    struct area_span *coc;       // of the field's samples: blocks of a row, see convolve_blocks, hold none without CoC
     struct area_span *seen;      // of what its pixels see
-    float *work;                 // what follows is free
+    struct area_groups *groups;  // of the field's samples
+    int x0, wide;                // where the first group begins, and a group's columns
+    int n;                       // columns of all groups
+    uint32_t *dirty;  // groups where a level's planes may be something else than 0. NULL: they are all written anyway
+    float *work;      // what follows is free
 };
 
 static struct area_rows area_rows_of(const struct hf_frame *f, struct hf_rect r)
 {
     const int reach = hf_gather_halo(f->s, HF_HALO_TAPS).y, n = r.y1 - r.y0 + 2 * reach;
-    _Static_assert(sizeof(struct convolve_row) + 2 * sizeof(struct area_span) <= HF_ROW_FLOATS * sizeof(float),
+    _Static_assert(sizeof(struct convolve_row) + sizeof(struct area_span) + sizeof(uint32_t) +
+                           sizeof(struct area_groups) <=
+                       HF_ROW_FLOATS * sizeof(float),
                    "a row");
     struct area_rows rows = {.y0 = r.y0 - reach, .level = (struct convolve_row *)f->work};
-    rows.coc = (struct area_span *)(rows.level + n);
-    rows.seen = rows.coc + n;
+    rows.seen = (struct area_span *)(rows.level + n);
+    rows.groups = (struct area_groups *)(rows.seen + n);
     rows.work = f->work + HF_ROW_FLOATS * ((n + 1) & ~1);
     return rows;
-}
-
-// Of a channel of the half-resolution CoC. Returns that of all.
-static struct area_span area_coc_rows(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area,
-                                      int channel)
-{
-    struct area_span all = {AREA_NONE, 0};
-    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++) {
-        struct area_range range = area_range_none();
-        area_range_row(&range, hf_at(&f->buf[HF_BUF_COC4], channel, area.x0, y), area.x1 - area.x0, AREA_NONE);
-        rows->coc[y - rows->y0] = area_range_ends(&range);
-        area_span_join(&all, rows->coc[y - rows->y0]);
-    }
-    return all;
 }
 
 // Can a sample with a CoC between these be in a level?
@@ -160,11 +162,19 @@ struct area_limits {
 };
 
 // times: by what CoC are multiplied before.
+HF_INLINE float area_limit_least(const struct hf_levels *l, int i, float times)
+{
+    return i + 1 < l->count ? l->level[i + 1].coc / times * (1 - 4 * FLT_EPSILON) : 0;
+}
+
+HF_INLINE float area_limit_most(const struct hf_levels *l, int i, float times)
+{
+    return i > 0 ? l->level[i - 1].coc / times * (1 + 4 * FLT_EPSILON) : FLT_MAX;
+}
+
 HF_INLINE struct area_limits area_limits_of(const struct hf_levels *l, int i, float times)
 {
-    const float least = i + 1 < l->count ? l->level[i + 1].coc / times * (1 - 4 * FLT_EPSILON) : 0;
-    const float most = i > 0 ? l->level[i - 1].coc / times * (1 + 4 * FLT_EPSILON) : FLT_MAX;
-    return (struct area_limits){vf_set1(least), vf_set1(most)};
+    return (struct area_limits){vf_set1(area_limit_least(l, i, times)), vf_set1(area_limit_most(l, i, times))};
 }
 
 HF_INLINE vm area_within(const struct area_limits *a, vf coc)
@@ -172,12 +182,94 @@ HF_INLINE vm area_within(const struct area_limits *a, vf coc)
     return vm_and(vf_gt(coc, a->least), vf_lt(coc, a->most));
 }
 
-// One row of a level's planes. Returns which blocks of it hold something.
-HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect area, const int kind, int i, int y)
+// Move to the levels that CoC between these can have a share of: from the first, the largest, to the last.
+HF_INLINE void area_levels_move(const struct hf_levels *l, struct area_span coc, int *first, int *last)
+{
+    while (*first > 0 && coc.most > area_limit_least(l, *first - 1, 1))
+        (*first)--;
+    while (*first + 1 < l->count && !(coc.most > area_limit_least(l, *first, 1)))
+        (*first)++;
+    while (*last + 1 < l->count && coc.least < area_limit_most(l, *last + 1, 1))
+        (*last)++;
+    while (*last > 0 && !(coc.least < area_limit_most(l, *last, 1)))
+        (*last)--;
+}
+
+// Which groups of a field's samples are in which level. Returns the CoC of all. The area of a level may not be larger than this.
+static struct area_span area_coc_rows(const struct hf_frame *f, struct area_rows *rows, struct hf_rect area,
+                                      enum area_kind kind)
+{
+    const struct hf_levels *l = hf_gather_levels(f->s, kind == AREA_FAR ? HF_FAR : HF_NEAR);
+    const int channel = kind == AREA_NEAR ? HF_AREA_NEAR_MOST : HF_AREA_FAR_OF_LIGHT, n = area.x1 - area.x0;
+    struct area_span all = {AREA_NONE, 0};
+    const int height = area.y1 - rows->y0;
+    int first = 0, last = 0;
+    rows->x0 = area.x0;
+    rows->n = n;
+    rows->wide = AREA_GROUP;
+    rows->dirty = (uint32_t *)(rows->groups + height);
+    memset(rows->dirty, 0xff, (size_t)height * sizeof *rows->dirty);
+    while (n > AREA_GROUPS * rows->wide)
+        rows->wide *= 2;
+    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++) {
+        const float *coc = hf_at(&f->buf[HF_BUF_COC4], channel, area.x0, y);
+        uint32_t *level = rows->groups[y - rows->y0].level;
+        memset(level, 0, (size_t)l->count * sizeof *level);
+        for (int x = 0, g = 0; x < n; x += rows->wide, g++) {
+            struct area_range range = area_range_none();
+            area_range_row(&range, coc + x, hf_min(rows->wide, n - x), AREA_NONE);
+            if (!vm_any(vf_gt(range.most, vf_zero())))
+                continue;
+            const struct area_span own = area_range_ends(&range);
+            area_span_join(&all, own);
+            area_levels_move(l, own, &first, &last);
+            for (int i = first; i <= last; i++)
+                level[i] |= (uint32_t)1 << g;
+        }
+    }
+    return all;
+}
+
+// The groups that have columns x0 to x1 - 1.
+HF_INLINE uint32_t area_groups_in(const struct area_rows *rows, int x0, int x1)
+{
+    const int first = (x0 - rows->x0) / rows->wide, last = (x1 - 1 - rows->x0) / rows->wide;
+    return ~(uint32_t)0 >> (AREA_GROUPS - 1 - last) & ~(uint32_t)0 << first;
+}
+
+// The columns of the next run of groups, which are then left out; from the first group's on.
+HF_INLINE struct area_columns area_groups_next(const struct area_rows *rows, uint32_t *groups)
+{
+    const uint32_t begins = *groups & -*groups, ends = (*groups + begins) & ~*groups;
+    *groups &= ends ? -ends : 0;
+    return (struct area_columns){rows->wide * __builtin_ctz(begins),
+                                 hf_min(rows->wide * (ends ? __builtin_ctz(ends) : AREA_GROUPS), rows->n)};
+}
+
+// Zeros in groups of a row of a level's planes, where they are not 0 yet.
+static void area_level_clear(const struct hf_frame *f, const struct area_rows *rows, int y, uint32_t groups)
+{
+    uint32_t *dirty = &rows->dirty[y - rows->y0], left = groups & *dirty;
+    *dirty &= ~left;
+    while (left) {
+        const struct area_columns run = area_groups_next(rows, &left);
+        for (int i = 0; i < f->s->channels + 1 + hf_fields(f->s)->karis; i++) {
+            const int c = i - f->s->channels;
+            float *plane = c < 0 ? hf_at(&f->buf[HF_BUF_LEVEL], i, rows->x0, y)
+                                 : hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT], c, rows->x0, y);
+            for (int x = run.x0; x < run.x1; x += VF_N)
+                vf_store(plane + x, vf_zero());
+        }
+    }
+}
+
+// One row of a level's planes, in groups that can have samples of it. Returns which blocks of it hold something.
+HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct area_rows *rows, const int kind, int i, int y,
+                                  uint32_t groups)
 {
     const struct hf_setup *s = f->s;
     const struct hf_levels *l = hf_gather_levels(s, kind == AREA_FAR ? HF_FAR : HF_NEAR);
-    const int x0 = area.x0, karis = hf_fields(s)->karis;
+    const int x0 = rows->x0, karis = hf_fields(s)->karis;
     const float *w = karis ? hf_at(&f->buf[HF_BUF_WEIGHT], 0, x0, y) : NULL;
     float *coc[4], *from[4], *to[4], *weight[4];
     hf_row(&f->buf[HF_BUF_COC4], 4, x0, y, coc);
@@ -186,26 +278,30 @@ HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct hf_rect
     hf_row(&f->buf[HF_BUF_LEVEL_WEIGHT], 2, x0, y, weight);
     const struct area_limits limits = area_limits_of(l, i, 1);
     uint64_t filled = 0;
-    for (int x = 0; x < area.x1 - x0; x += VF_N) {
-        const vf most = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR_MOST : HF_AREA_FAR_OF_LIGHT] + x);
-        if (!vm_any(area_within(&limits, most))) {
+    rows->dirty[y - rows->y0] |= groups;
+    while (groups) {
+        const struct area_columns run = area_groups_next(rows, &groups);
+        for (int x = run.x0; x < run.x1; x += VF_N) {
+            const vf most = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR_MOST : HF_AREA_FAR_OF_LIGHT] + x);
+            if (!vm_any(area_within(&limits, most))) {
+                for (int c = 0; c < s->channels; c++)
+                    vf_store(to[c] + x, vf_zero());
+                vf_store(weight[0] + x, vf_zero());
+                if (karis)
+                    vf_store(weight[1] + x, vf_zero());
+                continue;
+            }
+            filled |= convolve_blocks(x0 + x, x0 + x + VF_N);
+            vf share = kind == AREA_NEAR ? area_share(l, i, most) : area_spread(l, i, most);
+            const vf part = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR : HF_AREA_FAR] + x);
+            if (karis) {
+                vf_store(weight[1] + x, vf_mul(part, share));
+                share = vf_mul(share, vf_load(w + x));
+            }
             for (int c = 0; c < s->channels; c++)
-                vf_store(to[c] + x, vf_zero());
-            vf_store(weight[0] + x, vf_zero());
-            if (karis)
-                vf_store(weight[1] + x, vf_zero());
-            continue;
+                vf_store(to[c] + x, vf_mul(vf_load(from[c] + x), share));
+            vf_store(weight[0] + x, vf_mul(part, share));
         }
-        filled |= convolve_blocks(x0 + x, x0 + x + VF_N);
-        vf share = kind == AREA_NEAR ? area_share(l, i, most) : area_spread(l, i, most);
-        const vf part = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR : HF_AREA_FAR] + x);
-        if (karis) {
-            vf_store(weight[1] + x, vf_mul(part, share));
-            share = vf_mul(share, vf_load(w + x));
-        }
-        for (int c = 0; c < s->channels; c++)
-            vf_store(to[c] + x, vf_mul(vf_load(from[c] + x), share));
-        vf_store(weight[0] + x, vf_mul(part, share));
     }
     return filled;
 }
@@ -218,15 +314,19 @@ static struct hf_rect area_grown(struct hf_rect r, const struct hf_taps *t)
 static void area_level_planes(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area,
                               enum area_kind kind, int i)
 {
-    const struct hf_levels *l = hf_gather_levels(f->s, kind == AREA_FAR ? HF_FAR : HF_NEAR);
+    const uint32_t inside = area_groups_in(rows, area.x0, area.x1);
     for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++) {
-        const struct area_span coc = rows->coc[y - rows->y0];
+        const uint32_t groups = rows->groups[y - rows->y0].level[i] & inside;
         struct convolve_row *row = &rows->level[y - rows->y0];
-        if (kind == AREA_NEAR)
-            row->filled = area_is_in(l, AREA_NEAR, i, coc) ? area_level_row(f, area, AREA_NEAR, i, y) : 0;
-        else
-            row->filled = area_is_in(l, AREA_FAR, i, coc) ? area_level_row(f, area, AREA_FAR, i, y) : 0;
         row->wanted = ~(uint64_t)0;
+        row->filled = 0;
+        if (!groups)
+            continue;
+        area_level_clear(f, rows, y, inside & ~groups);
+        if (kind == AREA_NEAR)
+            row->filled = area_level_row(f, rows, AREA_NEAR, i, y, groups);
+        else
+            row->filled = area_level_row(f, rows, AREA_FAR, i, y, groups);
     }
 }
 
@@ -329,8 +429,9 @@ HF_INLINE uint64_t area_behind_row(const struct hf_frame *f, const struct hf_rec
 static void area_behind_planes(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area, int i)
 {
     const int karis = hf_fields(f->s)->karis, leaves = area_leaves(f->s, i);
-    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++)
+    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++) {
         rows->level[y - rows->y0].filled = karis    ? area_behind_row(f, area, i, y, 1, leaves)
                                            : leaves ? area_behind_row(f, area, i, y, 0, 1)
                                                     : area_behind_row(f, area, i, y, 0, 0);
+    }
 }

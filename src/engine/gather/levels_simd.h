@@ -6,15 +6,10 @@
 // Zeros in a level's rows that hold nothing, which have not been written. Only tents and columns read such rows.
 static void area_clear_unfilled(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area)
 {
-    const size_t size = (size_t)(area.x1 - area.x0) * sizeof(float);
-    for (int y = area.y0; y < area.y1; y++) {
-        if (rows->level[y - rows->y0].filled)
-            continue;
-        for (int c = 0; c < f->s->channels; c++)
-            memset(hf_at(&f->buf[HF_BUF_LEVEL], c, area.x0, y), 0, size);
-        for (int c = 0; c < 3; c++)
-            memset(hf_at(&f->buf[HF_BUF_LEVEL_WEIGHT], c, area.x0, y), 0, size);
-    }
+    const uint32_t inside = area_groups_in(rows, area.x0, area.x1);
+    for (int y = area.y0; y < area.y1; y++)
+        if (!rows->level[y - rows->y0].filled)
+            area_level_clear(f, rows, y, inside);
 }
 
 // A level's planes around r, into its sums.
@@ -23,7 +18,7 @@ static void area_convolve_level(const struct hf_frame *f, const struct area_rows
 {
     struct convolve_job j = {.row = &rows->level[r.y0 - rows->y0], .x0 = r.x0, .clears = 1};
     fixed_column *column = area_column(t);
-    if (column || t->step > 1)
+    if (rows->dirty && (column || t->step > 1))
         area_clear_unfilled(f, rows, area_grown(r, t));
     for (int c = 0; c < f->s->channels; c++)
         convolve_plane(&j, f, r, HF_BUF_LEVEL, c, HF_BUF_LEVEL_SUM, c);
@@ -228,8 +223,8 @@ static void area_near_spread(const struct hf_frame *f, struct hf_rect r)
         const struct area_sums sums = area_near_sums(f, r.x0, y);
         area_clear_row(f, &sums, r.x1 - r.x0);
     }
-    const struct area_rows rows = area_rows_of(f, r);
-    const struct area_span all = area_coc_rows(f, &rows, area_grown(r, &l->level[0].kernel.taps), HF_AREA_NEAR_MOST);
+    struct area_rows rows = area_rows_of(f, r);
+    const struct area_span all = area_coc_rows(f, &rows, area_grown(r, &l->level[0].kernel.taps), AREA_NEAR);
     for (int i = 0; i < l->count && !hf_stopped(f->s->stop); i++) {
         const struct hf_taps *t = &l->level[i].kernel.taps;
         if (!area_is_in(l, AREA_NEAR, i, all))
@@ -389,9 +384,9 @@ static void area_far_end(const struct hf_frame *f, struct hf_rect r)
 static void area_far_levels(const struct hf_frame *f, struct hf_rect r)
 {
     const struct hf_levels *l = hf_gather_levels(f->s, HF_FAR);
-    const struct area_rows rows = area_rows_of(f, r);
+    struct area_rows rows = area_rows_of(f, r);
     const struct hf_rect around = area_grown(r, &l->level[l->filled].kernel.taps);
-    const struct area_span coc = area_coc_rows(f, &rows, around, HF_AREA_FAR_OF_LIGHT);
+    const struct area_span coc = area_coc_rows(f, &rows, around, AREA_FAR);
     const struct area_span seen = area_far_begin(f, &rows, r);
     for (int i = l->count - 1; i >= 0 && !hf_stopped(f->s->stop); i--) {
         const struct hf_taps *t = &l->level[i].kernel.taps;

@@ -14,14 +14,9 @@ HF_INLINE vf tent(const float *const *p, int x, const int step)
     return vf_add(vf_add(third, beside), vf_add(inner, inner));
 }
 
-// Columns x0 to x1 - 1 of a row.
-struct tents_run {
-    int x0, x1;
-};
-
 // 64 blocks of columns have 32 runs at most.
 struct tents_runs {
-    struct tents_run run[32];
+    struct area_columns run[32];
     int count;
 };
 
@@ -31,7 +26,7 @@ static void tents_find(uint64_t blocks, int x, int n, struct tents_runs *runs)
     const int first = x >> 4, most = ((x + n - 1) >> 4) - first + 1, at = first & 63;
     runs->count = 0;
     if (most > 64) {
-        runs->run[runs->count++] = (struct tents_run){0, n};
+        runs->run[runs->count++] = (struct area_columns){0, n};
         return;
     }
     uint64_t left = (blocks >> at | blocks << (-at & 63)) & (~(uint64_t)0 >> (64 - most));
@@ -40,7 +35,7 @@ static void tents_find(uint64_t blocks, int x, int n, struct tents_runs *runs)
                        ends = (left + begins) & ~left;  // the first block, and the one after its run
         const int x0 = 16 * (first + __builtin_ctzll(begins)) - x;
         const int x1 = ends ? 16 * (first + __builtin_ctzll(ends)) - x : n;
-        runs->run[runs->count++] = (struct tents_run){hf_max(x0, 0), hf_min(x1, n)};
+        runs->run[runs->count++] = (struct area_columns){hf_max(x0, 0), hf_min(x1, n)};
         left &= ends ? -ends : 0;
     }
 }
@@ -101,8 +96,11 @@ static void area_tents(const struct hf_frame *f, const struct area_rows *rows, s
             any |= above[i] | row[i + 1].filled;
         any |= own;
         row->filled = any | any << 1 | any >> 63 | any >> 1 | any << 63;
-        if (any)
+        if (any) {
+            if (rows->dirty)
+                rows->dirty[r.y0 + y - half - rows->y0] = ~(uint32_t)0;
             area_tents_row(j, t, y, r.x1 - r.x0 + 2 * t->rx, any);
+        }
         for (int i = 0; i + 1 < half; i++)
             above[i] = above[i + 1];
         above[half - 1] = own;
