@@ -189,8 +189,10 @@ HF_INLINE vf down_block_r11(const enum hf_storage storage, const struct down_row
         }
         for (int i = 0; i < 4; i++)  // products are those with samples at full size
             q.part[i] = vf_mul(q.part[i], vf_set1(0x1p112f));
+        // No sample exceeds the limit. But the mean of the smallest denormal parts is 0, and then so is what it will divide.
+        const vm some = vf_gt(q.mean, vf_zero());
         for (int c = 0; c < 3; c++)
-            vf_put(d->part[field][c] + x, round_stored(storage, down_part(q.part, quad[c]), c), stream);
+            vf_put(d->part[field][c] + x, round_stored(storage, vf_keep(some, down_part(q.part, quad[c])), c), stream);
     }
     return vf_max(vf_max(mean[0], mean[1]), mean[2]);
 }
