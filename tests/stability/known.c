@@ -16,7 +16,7 @@ static const char *const
     *const levels =
         "known: what begins to be seen closely outweighs 256 times, for each level, what was found farther away",
     *const traces =
-        "known: before black surroundings the last trace of a lamp decides by which radius they are blurred",
+        "known: before black surroundings a trace of a lamp decides steeply by which radius they are blurred",
     *const units =
         "known: a sprite has one of 1024 sizes an octave, its rows' ends are 256ths of a pixel, their heights 128ths",
     *const draws = "known: what is hidden is searched along rows and columns in turn";
@@ -45,7 +45,7 @@ static const struct known {
     {"hexagon", "a step: focus", 0.587, &unexplained},
     {"layers best", "a step", 18.6, &patterns},
     {"layers", "a step: a depth sample", 3.34, &levels},
-    {"hexagon", "a step at night", 81.2, &traces},
+    {"hexagon", "a step at night", 0.659, &traces},
     {"scatter", "a step at night", 21.6, &units},
     {"layers", "a step at night", 14.5, &unexplained},
 };

@@ -111,7 +111,16 @@ struct sum {
     double colour[4], a, w;
 };
 
-// Sum along a line at a pixel; p < 0: near, every sample counts.
+// How much a sample of radius q counts at a tap; p < 0: near, every sample counts.
+static double count_of(const struct tap *t, double q, double p)
+{
+    double w = fmin(t->b, q - t->before);
+    if (p > 0)
+        w = fmin(w, t->b * (1 + (2 * p - q) / fmin(p, 1)));
+    return fmax(w, 0) * t->part;
+}
+
+// Sum along a line at a pixel.
 static struct sum sum_of(const struct field *f, const struct line *l, int x, int y, double p)
 {
     struct sum s = {{0}, 0, 0};
@@ -120,10 +129,7 @@ static struct sum sum_of(const struct field *f, const struct line *l, int x, int
         // Beyond the field there is nothing.
         const int u = x + t->dx - f->x0, v = y + t->dy - f->y0, at = at_of(f, x + t->dx, y + t->dy);
         const double q = u == clampi(u, f->width) && v == clampi(v, f->height) ? f->q[at] : 0;
-        double w = fmin(t->b, q - t->before);
-        if (p > 0)
-            w = fmin(w, t->b * (1 + (2 * p - q) / fmin(p, 1)));
-        w = fmax(w, 0) * t->part;
+        const double w = count_of(t, q, p);
         for (int c = 0; c < f->channels; c++)
             s.colour[c] += w * f->colour[c][at];
         s.a += w * f->a[at];
@@ -173,6 +179,12 @@ static void near_field(const struct field *in, const struct line l[3], struct fi
     field_free(&b);
 }
 
+// Light over radius of a sample.
+static double over_of(const struct field *f, int at)
+{
+    return light_of(f->colour[0][at], f->colour[1][at], f->colour[2][at]) / fmax(f->q[at], 0.25);
+}
+
 // Blur premultiplied colours at a far pixel of radius p: plain colours, the total weight found, and light over radii.
 static struct sum far_blur(const struct field *in, const struct line *l, int x, int y, double p)
 {
@@ -181,8 +193,7 @@ static struct sum far_blur(const struct field *in, const struct line *l, int x, 
     const double o = own_of(s.a, p);
     for (int c = 0; c < in->channels; c++)
         s.colour[c] = (s.colour[c] + o * in->colour[c][at] / in->a[at]) / (s.a + o);
-    const double light = light_of(in->colour[0][at], in->colour[1][at], in->colour[2][at]);
-    s.w = (s.w + o * light / in->a[at] / fmax(in->q[at], 0.25)) / (s.a + o);
+    s.w = (s.w + o * over_of(in, at) / in->a[at]) / (s.a + o);
     s.a += o;
     return s;
 }
@@ -235,6 +246,34 @@ static void keep_within(struct sum *s, double part, int channels)
     s->a = part;
 }
 
+// What shines along a line: the sum of w m, m being light over radius, and that of w m ^ 2.
+static void add_lit(const struct field *f, const struct line *l, int x, int y, double p, double lit[2])
+{
+    for (int i = 0; i < l->count; i++) {
+        const struct tap *t = &l->tap[i];
+        const int u = x + t->dx, v = y + t->dy, at = at_of(f, u, v);
+        if (u - f->x0 != clampi(u - f->x0, f->width) || v - f->y0 != clampi(v - f->y0, f->height))
+            continue;
+        const double w = count_of(t, f->q[at], p), m = over_of(f, at);
+        lit[0] += w * m;
+        lit[1] += w * m * m;
+    }
+}
+
+// Where all that shines is seen along less than a 256th of a pixel, bring the mean radius towards the pixel's own. bright: the
+// least of that which is left.
+static void fade_mean(struct field *out, const double lit[2], double p, double bright, int at)
+{
+    if (!(lit[1] > 0))
+        return;
+    const double sure = fmin(1, fmax(256 * lit[0] * lit[0] / lit[1], bright)), q = out->q[at];
+    out->q[at] = fmax(q + (p - q) * (1 - sure), 0.25);
+    const double a = fmax(q, 1) / fmax(out->q[at], 1);
+    out->a[at] *= a;
+    for (int c = 0; c < out->channels; c++)
+        out->colour[c][at] *= a;
+}
+
 // Pass 1 at a pixel in the frame, or beyond it with the radius of the frame's nearest pixel.
 static void far_first(const struct field *in, const struct line l[3], int x, int y, struct field *u, struct field *b)
 {
@@ -252,6 +291,15 @@ static void far_first(const struct field *in, const struct line l[3], int x, int
     const struct sum sum = both(&up, &left);
     put_far(u, &up, p, part, up.a, to);
     put_far(b, &sum, p, part, sum.a / 2, to);
+    // The pixel itself is dark beside what it finds.
+    const double bright = 65536 * over_of(in, nearest) / sum.w;
+    double lit[2] = {0, 0};
+    if (!(bright < 1))
+        return;
+    add_lit(in, &l[0], x, y, p, lit);
+    fade_mean(u, lit, p, bright, to);
+    add_lit(in, &l[1], x, y, p, lit);
+    fade_mean(b, lit, p, bright, to);
 }
 
 static void far_field(const struct field *in, const struct line l[3], int reach, struct field *out)

@@ -122,6 +122,18 @@ static struct limit limit_of(float p)
     return (struct limit){(2 * p) * slope + 1, slope};
 }
 
+// How much a sample of radius q counts at a tap.
+static float count_of(const struct hf_hexagon_tap *t, const struct limit *limit, float q)
+{
+    float w = q - t->c;
+    if (limit) {
+        const float most = t->b * (limit->limit - limit->slope * q);
+        w = w < most ? w : most;
+    }
+    w = w < t->b ? w : t->b;
+    return (w > 0 ? w : 0) * t->part;
+}
+
 static struct sums sum_line(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y,
                             const struct limit *limit)
 {
@@ -130,13 +142,7 @@ static struct sums sum_line(const struct hf_frame *f, const struct hf_hexagon_fi
     for (const struct hf_hexagon_tap *t = l->taps; t < l->taps + l->count; t++) {
         const int u = x + t->dx, v = y + t->dy;
         const float q = in->sign * *hf_at(in->radius, in->q, u, v);
-        float w = q - t->c;
-        if (limit) {
-            const float most = t->b * (limit->limit - limit->slope * q);
-            w = w < most ? w : most;
-        }
-        w = w < t->b ? w : t->b;
-        w = (w > 0 ? w : 0) * t->part;
+        const float w = count_of(t, limit, q);
         for (int c = 0; c < f->s->channels; c++)
             sum.colour[c] = sum.colour[c] + w * *hf_at(in->colour, c, u, v);
         sum.a = sum.a + w * *hf_at(in->weight, in->a, u, v);
@@ -248,6 +254,57 @@ static float keep_within(const struct hf_frame *f, struct found *s, int line, in
     return part;
 }
 
+// What shines along a line of pass 1: the sum of w m, and that of w m ^ 2. m counts in units of all.
+struct lit {
+    float sum, squares;
+};
+
+static void add_lit(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y, float p,
+                    float all, struct lit *lit)
+{
+    const struct hf_hexagon_line *l = &hf_hexagon(f->s)->line[line];
+    const struct limit limit = limit_of(p);
+    for (const struct hf_hexagon_tap *t = l->taps; t < l->taps + l->count; t++) {
+        const int u = x + t->dx, v = y + t->dy;
+        const float w = count_of(t, &limit, in->sign * *hf_at(in->radius, in->q, u, v));
+        const float m = *hf_at(in->weight, in->mean, u, v) / all, light = w > 0 ? w * m : 0;
+        lit->sum = lit->sum + light;
+        lit->squares = lit->squares + (w > 0 ? light * m : 0);
+    }
+}
+
+// Bring a stored mean radius towards the pixel's own, p, as far as it is of but a trace of light. bright: how much the pixel
+// itself has of what makes it bright.
+static void fade_mean(const struct hf_frame *f, const struct lit *lit, float p, float bright,
+                      enum hf_hexagon_made colour, int weight, int x, int y)
+{
+    const float length = (lit->sum / lit->squares) * (lit->sum * (1 / HEXAGON_TRACE));
+    const float sure = length > bright ? length : bright;
+    if (!(lit->squares > 0) || !(sure < 1))
+        return;
+    float *q = hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight + 1, x, y);
+    const float mean = *q + (p - *q) * (1 - sure), least = mean > HEXAGON_LEAST_MEAN ? mean : HEXAGON_LEAST_MEAN;
+    const float a = (*q > 1 ? *q : 1) / (least > 1 ? least : 1);
+    for (int c = 0; c < f->s->channels; c++)
+        *hf_at(hf_hexagon_made(f, colour), c, x, y) *= a;
+    *hf_at(hf_hexagon_made(f, HF_HEXAGON_FAR_W), weight, x, y) *= a;
+    *q = least;
+}
+
+// After pass 1 has stored what it found at a pixel whose own m is own. all: the mean m of both lines.
+static void fade_traces(const struct hf_frame *f, const struct hf_hexagon_field *in, int x, int y, float p, float own,
+                        float all)
+{
+    const float dark = all * HEXAGON_DARK;
+    struct lit lit = {0, 0};
+    if (!(dark > own))
+        return;
+    add_lit(f, in, 0, x, y, p, all, &lit);
+    fade_mean(f, &lit, p, own / dark, HF_HEXAGON_FAR_U, 0, x, y);
+    add_lit(f, in, 1, x, y, p, all, &lit);
+    fade_mean(f, &lit, p, own / dark, HF_HEXAGON_FAR_B, 2, x, y);
+}
+
 static void far_1(const struct hf_frame *f, int x, int y)
 {
     const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
@@ -263,6 +320,7 @@ static void far_1(const struct hf_frame *f, int x, int y)
     store_far(f, &u, p, part, up, HF_HEXAGON_FAR_U, 0, x, y);
     add(&u, &v, f->s->channels);
     store_far(f, &u, p, part, 0.5f * (up + left), HF_HEXAGON_FAR_B, 2, x, y);
+    fade_traces(f, &in, x, y, p, *hf_at(in.weight, in.mean, x, y), u.w);
 }
 
 // The sums of a line that reaches beyond the frame. They are normalised only if their weight exceeds 1.
@@ -293,6 +351,7 @@ static void far_beyond(const struct hf_frame *f, int x, int y)
     store_far(f, &u, p, part, u.a, HF_HEXAGON_FAR_U, 0, x, y);
     add(&u, &v, f->s->channels);
     store_far(f, &u, p, part, 0.5f * u.a, HF_HEXAGON_FAR_B, 2, x, y);
+    fade_traces(f, &in, x, y, p, *hf_at(in.weight, in.mean, at_x, at_y), u.w);
 }
 
 static void far_2(const struct hf_frame *f, int x, int y)

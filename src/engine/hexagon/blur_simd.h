@@ -240,6 +240,88 @@ HF_INLINE int hex_leaves(const struct hf_frame *f, struct hf_rect b)
            b.y0 + hf_min(u->y0, v->y0) < 2 || b.y1 + hf_max(u->y1, v->y1) > hf_hexagon_height(f->s) - 2;
 }
 
+// What vectors of rows have once pass 1 has stored what it found there: radii, their own m, and the mean m of both lines.
+struct hex_mean {
+    vf p[HEX_ROWS], own[HEX_ROWS], all[HEX_ROWS];
+};
+
+// As add_lit() of blur.c.
+HF_INLINE void hex_add_lit(const struct hf_frame *f, const struct hf_hexagon_field *in, int line, int x, int y, vf p,
+                           vf all, vf lit[2])
+{
+    const struct hf_hexagon_line *l = &hf_hexagon(f->s)->line[line];
+    const struct hex_limit limit = hex_limit(p);
+    const vf zero = vf_zero(), sign = vf_set1(in->sign);
+    for (const struct hf_hexagon_tap *t = l->taps; t < l->taps + l->count; t++) {
+        const vf q = vf_mul(sign, vf_load(hf_at(in->radius, in->q, x + t->dx, y + t->dy)));
+        const vf b = vf_set1(t->b), most = vf_mul(b, vf_fma(limit.slope, q, limit.limit));
+        vf w = vf_min(vf_min(vf_sub(q, vf_set1(t->c)), most), b);
+        w = vf_mul(vf_max(w, zero), vf_set1(t->part));
+        const vf m = vf_div(vf_load(hf_at(in->weight, in->mean, x + t->dx, y + t->dy)), all);
+        const vf light = vf_keep(vf_gt(w, zero), vf_mul(w, m));
+        lit[0] = vf_add(lit[0], light);
+        lit[1] = vf_add(lit[1], vf_keep(vf_gt(w, zero), vf_mul(light, m)));
+    }
+}
+
+// As fade_mean() of blur.c, where dark.
+HF_INLINE void hex_fade_mean(const struct hf_frame *f, const vf lit[2], vf p, vf bright, vm dark,
+                             enum hf_hexagon_made colour, int weight, int x, int y)
+{
+    const struct hf_buf *weights = hf_hexagon_made(f, HF_HEXAGON_FAR_W);
+    const vf one = vf_set1(1), length = vf_mul(vf_div(lit[0], lit[1]), vf_mul(lit[0], vf_set1(1 / HEXAGON_TRACE)));
+    const vf sure = vf_max(length, bright);
+    const vm is = vm_and(dark, vm_and(vf_gt(lit[1], vf_zero()), vf_lt(sure, one)));
+    if (!vm_any(is))
+        return;
+    float *q = hf_at(weights, weight + 1, x, y), *whole = hf_at(weights, weight, x, y);
+    const vf old = vf_load(q), mean = vf_fma(vf_sub(p, old), vf_sub(one, sure), old);
+    const vf least = vf_max(mean, vf_set1(HEXAGON_LEAST_MEAN)), a = vf_div(vf_max(old, one), vf_max(least, one));
+    for (int c = 0; c < f->s->channels; c++) {
+        float *to = hf_at(hf_hexagon_made(f, colour), c, x, y);
+        vf_store(to, vf_select(is, vf_mul(vf_load(to), a), vf_load(to)));
+    }
+    vf_store(whole, vf_select(is, vf_mul(vf_load(whole), a), vf_load(whole)));
+    vf_store(q, vf_select(is, least, old));
+}
+
+// As fade_traces() of blur.c. Few vectors are dark.
+static __attribute__((noinline)) void hex_fade_traces(const struct hf_frame *f, const int rows, int x, int y,
+                                                      const struct hex_mean *mean)
+{
+    const struct hf_hexagon_field in = hf_hexagon_field(f, HF_FAR);
+    for (int i = 0; i < rows; i++) {
+        const vf p = mean->p[i], own = mean->own[i], all = mean->all[i], most = vf_mul(all, vf_set1(HEXAGON_DARK));
+        const vf bright = vf_div(own, most);
+        const vm dark = vf_gt(most, own);
+        vf lit[2] = {vf_zero(), vf_zero()};
+        if (!vm_any(dark))
+            continue;
+        hex_add_lit(f, &in, 0, x, y + i, p, all, lit);
+        hex_fade_mean(f, lit, p, bright, dark, HF_HEXAGON_FAR_U, 0, x, y + i);
+        hex_add_lit(f, &in, 1, x, y + i, p, all, lit);
+        hex_fade_mean(f, lit, p, bright, dark, HF_HEXAGON_FAR_B, 2, x, y + i);
+    }
+}
+
+// u: the sums of both lines. A copy of them leaves those of the loops in registers.
+HF_INLINE void hex_traces(const struct hf_frame *f, const int rows, int x, int y, const vf p[HEX_ROWS],
+                          const vf own[HEX_ROWS], const struct hex_sums u[HEX_ROWS])
+{
+    vm dark = vf_gt(vf_mul(u[0].w, vf_set1(HEXAGON_DARK)), own[0]);
+    for (int i = 1; i < rows; i++)
+        dark = vm_or(dark, vf_gt(vf_mul(u[i].w, vf_set1(HEXAGON_DARK)), own[i]));
+    if (!vm_any(dark))
+        return;
+    struct hex_mean mean;
+    for (int i = 0; i < rows; i++) {
+        mean.p[i] = p[i];
+        mean.own[i] = own[i];
+        mean.all[i] = u[i].w;
+    }
+    hex_fade_traces(f, rows, x, y, &mean);
+}
+
 HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int channels, const int rows)
 {
     const struct hf_buf *made = hf_hexagon_made(f, 0);
@@ -276,6 +358,10 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
             hex_add(&u[i], &v[i], channels);
             hex_store_far(made, &u[i], channels, p[i], part[i], all[i], HF_HEXAGON_FAR_B, 2, x, y + i);
         }
+        vf own[HEX_ROWS];
+        for (int i = 0; i < rows; i++)
+            own[i] = vf_load(hf_at(in.weight, in.mean, x, y + i));
+        hex_traces(f, rows, x, y, p, own, u);
     }
 }
 
@@ -283,7 +369,7 @@ HF_INLINE void hex_far_1(const struct hf_frame *f, struct hf_rect b, const int c
 
 // For the pixels of a block, the frame's nearest pixels; a vector past a row's end is 0.
 struct hex_nearest {
-    float p[HEX_HEIGHT][HEX_WIDTH + VF_N], part[HEX_HEIGHT][HEX_WIDTH + VF_N];
+    float p[HEX_HEIGHT][HEX_WIDTH + VF_N], part[HEX_HEIGHT][HEX_WIDTH + VF_N], own[HEX_HEIGHT][HEX_WIDTH + VF_N];
     float least;  // the least radius above 0
 };
 
@@ -298,6 +384,7 @@ static void hex_nearest(const struct hf_frame *f, const struct hf_hexagon_field 
             const float q = is ? *hf_at(in->radius, in->q, u, v) : 0;
             n->p[y - b.y0][x - b.x0] = q;
             n->part[y - b.y0][x - b.x0] = is ? *hf_at(in->weight, in->a, u, v) * (q > 1 ? q : 1) : 0;
+            n->own[y - b.y0][x - b.x0] = is ? *hf_at(in->weight, in->mean, u, v) : 0;
             if (q > 0 && q < n->least)
                 n->least = q;
         }
@@ -334,9 +421,10 @@ HF_INLINE void hex_far_beyond(const struct hf_frame *f, struct hf_rect b, const 
     }
     HEX_EACH(b, rows, x, y)
     {
-        vf p[HEX_ROWS], part[HEX_ROWS];
+        vf p[HEX_ROWS], part[HEX_ROWS], own[HEX_ROWS];
         struct hex_sums u[HEX_ROWS], v[HEX_ROWS];
         for (int i = 0; i < rows; i++) {
+            own[i] = vf_load(&n.own[y + i - b.y0][x - b.x0]);
             p[i] = vf_load(&n.p[y + i - b.y0][x - b.x0]);
             part[i] = vf_load(&n.part[y + i - b.y0][x - b.x0]);
         }
@@ -349,6 +437,7 @@ HF_INLINE void hex_far_beyond(const struct hf_frame *f, struct hf_rect b, const 
             hex_store_far(made, &u[i], channels, p[i], part[i], vf_mul(vf_set1(0.5f), u[i].a), HF_HEXAGON_FAR_B, 2, x,
                           y + i);
         }
+        hex_traces(f, rows, x, y, p, own, u);
     }
 }
 

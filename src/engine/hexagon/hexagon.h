@@ -19,7 +19,8 @@
 //
 // The near mean is the square of the mean root radius, each sample weighted by its share of what is found: a sample
 // that covers little changes it little, however large its radius. The far mean is 1 / the mean of 1 / radius, each
-// sample weighted by its light: a light before a dark wall is spread by its own radius, not by the wall's.
+// sample weighted by its light: a light before a dark wall is spread by its own radius, not by the wall's. Where a pixel's
+// lines are dark but for the last trace of a light, the mean fades to the pixel's own radius.
 //
 // Far light of pass 1 continues beyond the frame's edges; otherwise pass 2 would miss what it brings back, and hexagons
 // beside an edge would be cut. A pixel out there has the radius of the frame's nearest pixel, no colour of its own, and
@@ -236,6 +237,10 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 #define HEXAGON_ALL 2.0f
 // The least far mean radius. It reaches no other pixel.
 #define HEXAGON_LEAST_MEAN 0.25f
+// Far mean radii: what shines along less than TRACE pixels of a line is but a trace of light, which decides nothing. But a pixel
+// is dark only if it finds 1 / DARK times what it has itself.
+#define HEXAGON_TRACE 0x1p-8f
+#define HEXAGON_DARK 0x1p-16f
 // A sample of at least this weight counts as a whole pixel.
 #define HEXAGON_WHOLE (1 - 0x1p-20f)
 
