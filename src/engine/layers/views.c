@@ -296,24 +296,42 @@ static void mix_block(const struct hf_view_block *b, const struct hf_cell *of, f
         }
 }
 
-// Put what views see in the place of what the near stack holds, as far as they count.
-static void mix_near(const struct hf_view_block *b, const struct hf_cell *of)
+// Put a row of values, each divided by its pixel's total, in the place of what the near stack holds. value NULL: ones.
+static void put_row(float *restrict to, const float *restrict value, const float *restrict total,
+                    const float *restrict blend, int n)
+{
+    for (int x = 0; x < n; x++) {
+        const float v = value ? value[x] / total[x] : 1, part = blend[x], mixed = (1 - part) * to[x] + part * v;
+        const float put = part < 1 ? mixed : v;  // what slices left to views does not count
+        to[x] = part > 0 && total[x] > 0 ? put : to[x];
+    }
+}
+
+// Put what views see in the place of what the near stack holds, as far as they count: in row y of a tile.
+static void mix_near_row(const struct hf_view_block *b, const struct hf_cell *of, int tx, int ty, int y)
 {
     const struct hf_layers *l = b->c.l;
+    const struct hf_stack_row r = hf_layers_stack_at(of, NEAR, (b->c.x0 - of->x0) / 2, (b->c.y0 - of->y0) / 2 + y);
+    const int x0 = hf_max(tx * b->tile, b->made.x0), n = hf_min((tx + 1) * b->tile, b->made.x1) - x0;
+    const ptrdiff_t at = pixel_at(b, x0, y);
+    float blend[TILE], total[TILE];
+    for (int i = 0; i < n; i++) {
+        blend[i] = blend_in(b, tx, ty, x0 + i - tx * b->tile, y - ty * b->tile);
+        total[i] = total_at(b, at + i);
+    }
+    for (int i = 0; i < l->channels; i++)
+        put_row(r.colour[i] + x0, b->near[i] + at, total, blend, n);
+    put_row(r.weight + x0, b->near[4] + at, total, blend, n);
+    put_row(r.behind + x0, NULL, total, blend, n);
+}
+
+static void mix_near(const struct hf_view_block *b, const struct hf_cell *of)
+{
     for (int y = b->made.y0; y < b->made.y1; y++) {
-        const struct hf_stack_row r = hf_layers_stack_at(of, NEAR, (b->c.x0 - of->x0) / 2, (b->c.y0 - of->y0) / 2 + y);
         const int ty = tile_of(y, b->tile);
-        for (int x = b->made.x0; x < b->made.x1; x++) {
-            const ptrdiff_t at = pixel_at(b, x, y);
-            const int tx = tile_of(x, b->tile);
-            const float blend = blend_in(b, tx, ty, x - tx * b->tile, y - ty * b->tile), total = total_at(b, at);
-            if (!(blend > 0 && total > 0))
-                continue;
-            for (int i = 0; i < l->channels; i++)
-                put(&r.colour[i][x], b->near[i][at] / total, blend);
-            put(&r.weight[x], b->near[4][at] / total, blend);
-            put(&r.behind[x], 1, blend);
-        }
+        for (int tx = tile_of(b->made.x0, b->tile); tx <= tile_of(b->made.x1 - 1, b->tile); tx++)
+            if (b->blended[ty + 1] >> (tx + 1) & 1)
+                mix_near_row(b, of, tx, ty, y);
     }
 }
 
