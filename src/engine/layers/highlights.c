@@ -235,9 +235,11 @@ void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct
 // ninth of its light to the lamp itself, so it is drawn as an ordinary sample, which loses none.
 static void begin_shares(const struct hf_layers *l, const float *radius, const uint8_t *bright, int n, float *share)
 {
-    for (int x = 0; l->last >= 0 && x < n; x++)
-        if (bright[x / HF_LAYERS_TILE] && share[x] > 0 && radius[x] > 0)
-            share[x] *= hf_saturate((radius[x] * radius[x] - l->shares_from) * l->shares_scale);
+    for (int tile = 0; l->last >= 0 && tile * HF_LAYERS_TILE < n; tile++)
+        for (int x = tile * HF_LAYERS_TILE; bright[tile] && x < hf_min(n, (tile + 1) * HF_LAYERS_TILE); x++) {
+            const float r = radius[x], part = hf_saturate((r * r - l->shares_from) * l->shares_scale);
+            share[x] = share[x] > 0 && r > 0 ? share[x] * part : share[x];
+        }
 }
 
 void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch,
