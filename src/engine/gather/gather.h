@@ -38,9 +38,8 @@ enum { HF_AREA_NEAR, HF_AREA_FAR, HF_AREA_NEAR_MOST, HF_AREA_FAR_OF_LIGHT };
 
 // A kernel as large as some pixels' blur. CoC is relative to a radius no smaller than the frame's largest (engine.c).
 struct hf_level {
-    float coc;  // the CoC of pixels as blurred as this
-    float
-        counts;  // of what near pixels hide: what a sample of this level counts, for pixels whose CoC is 1, times hf_gather.once
+    float coc;      // the CoC of pixels as blurred as this
+    float counts;   // of what near pixels hide: hf_gather.once times what its sample counts, for pixels whose CoC is 1
     float to_next;  // 1 / (coc - that of the next one)
     float area;     // coc^2, and as for coc:
     float area_to_next;

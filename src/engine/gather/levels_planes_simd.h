@@ -429,9 +429,8 @@ HF_INLINE uint64_t area_behind_row(const struct hf_frame *f, const struct hf_rec
 static void area_behind_planes(const struct hf_frame *f, const struct area_rows *rows, struct hf_rect area, int i)
 {
     const int karis = hf_fields(f->s)->karis, leaves = area_leaves(f->s, i);
-    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++) {
+    for (int y = area.y0; y < area.y1 && !hf_stopped(f->s->stop); y++)
         rows->level[y - rows->y0].filled = karis    ? area_behind_row(f, area, i, y, 1, leaves)
                                            : leaves ? area_behind_row(f, area, i, y, 0, 1)
                                                     : area_behind_row(f, area, i, y, 0, 0);
-    }
 }
