@@ -64,8 +64,8 @@ static void make_disc(struct hf_slice *s, double r, double wide, struct hf_disc_
     s->reach = s->rows - 1 > s->reach ? s->rows - 1 : s->reach;
 }
 
-// Samples beyond the outermost slices are theirs as a whole: rounding may put the mean of radii beyond the largest of them.
-// The first one's part of a sample grows with its distance from so far away that it is 1 everywhere.
+// Samples beyond the outermost slices are theirs as a whole: rounding may put a mean of radii beyond the largest of them. Weighing
+// knows no slice without neighbours, so the first one's part begins to grow so far away that it is 1 wherever samples are.
 #define BEYOND 0x1p100f
 
 static void set_neighbours(struct hf_slice *slice, int count)
