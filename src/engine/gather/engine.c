@@ -268,6 +268,8 @@ static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_
         err = build_field(g, 1, s, p, r->full[1], r->largest[1], most, mem);
     if (!err)
         err = build_levels(behind, 0, radius, count, r->full[0], s, p, mem);
+    if (err)
+        return err;
     const float area = behind->level[behind->count - 1].area, counts = 1 / (area * area * area);
     g->once = 1;
     while (g->many && g->once * counts > HF_COUNTS_MOST)
@@ -277,7 +279,7 @@ static int build(struct hf_gather *g, const struct hf_setup *s, const struct hf_
         l->counts = g->once / (g->many ? l->area * l->area * l->area : l->area);
         l->half_far = 0.5f * r->full[1] / (r->full[0] * l->coc);
     }
-    return err;
+    return HF_OK;
 }
 
 static int prepare(void *own, const struct hf_setup *s, const struct hf_params *p, const struct hf_mem *mem)
