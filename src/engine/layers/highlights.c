@@ -232,12 +232,13 @@ void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct
 // Reduce the shares of a row of samples behind the last slice of full resolution. Such a sample lies partly in that slice, and its
 // part there must not cover the rest of it: the far stack is divided by what a cover leaves open (make_covers in slices.c). But
 // nearest to the slice a cover is less than the sample's part, or it would cover at once. There a lamp's share would lose up to a
-// ninth of its light to the lamp itself, so it is drawn as an ordinary sample, which loses none.
+// ninth of its light to the lamp itself, so it is drawn as an ordinary sample, which loses none. From the cover's radius on shares
+// grow to the whole, over as much of the squared radius as the cover took to grow.
 static void begin_shares(const struct hf_layers *l, const float *radius, const uint8_t *bright, int n, float *share)
 {
     for (int tile = 0; l->last >= 0 && tile * HF_LAYERS_TILE < n; tile++)
         for (int x = tile * HF_LAYERS_TILE; bright[tile] && x < hf_min(n, (tile + 1) * HF_LAYERS_TILE); x++) {
-            const float r = radius[x], part = hf_saturate((r * r - l->shares_from) * l->shares_scale);
+            const float r = radius[x], part = hf_saturate((r * r - l->cover->square) * l->cover->before_scale);
             share[x] = share[x] > 0 && r > 0 ? share[x] * part : share[x];
         }
 }

@@ -135,8 +135,6 @@ struct hf_layers {
     // is no far stack.
     struct hf_slice *cover;
     int last;
-    // Behind slice `last` shares begin at a squared radius of `shares_from`, and are whole 1 / shares_scale later (highlights.c).
-    float shares_from, shares_scale;
     // Slices that draw shares at full resolution, `parts` of them per ordinary slice, so that a highlight's rim lies
     // close to its own radius.
     struct hf_slice *shine;

@@ -188,9 +188,6 @@ static struct hf_disc_row *make_covers(struct hf_layers *l, int group, int middl
         c->radius = sqrtf(c->square);
         c->before_scale = 1 / (c->square - from);
         c->after_scale = 1 / (to - c->square);
-        // A sample's light counts as a highlight where the cover is the slice's whole part of it.
-        l->shares_from = c->square;
-        l->shares_scale = 1 / (c->square - from);
     }
     return row;
 }

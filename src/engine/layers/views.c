@@ -250,10 +250,10 @@ static float total_at(const struct hf_view_block *b, ptrdiff_t at)
     return b->c.l->key.cat_eye > 0 ? b->total[at] : 1;
 }
 
-// What slices left to views is not read.
-static void put(float *to, float value, float blend)
+// What views see in the place of what slices made, as far as they count. What slices left to views does not.
+static float mixed(float own, float seen, float blend)
 {
-    *to = blend < 1 ? (1 - blend) * *to + blend * value : value;
+    return blend < 1 ? (1 - blend) * own + blend * seen : seen;
 }
 
 // Put a tile's views in the place of what slices made, as far as they count.
@@ -276,7 +276,8 @@ static void mix_tile(const struct hf_view_block *b, const struct hf_cell *of, in
                 float own = rest * ((b->near[i][at] + fill * b->beyond[i][at]) / w) + light[i][x];
                 if (i == 3)
                     own = fabsf(own - 1) < HF_LAYERS_OPAQUE ? 1 : own;
-                put(&out[i][y * stride + x], own, blend);
+                float *to = &out[i][y * stride + x];
+                *to = mixed(*to, own, blend);
             }
         }
     }
@@ -301,9 +302,8 @@ static void put_row(float *restrict to, const float *restrict value, const float
                     const float *restrict blend, int n)
 {
     for (int x = 0; x < n; x++) {
-        const float v = value ? value[x] / total[x] : 1, part = blend[x], mixed = (1 - part) * to[x] + part * v;
-        const float put = part < 1 ? mixed : v;  // what slices left to views does not count
-        to[x] = part > 0 && total[x] > 0 ? put : to[x];
+        const float v = mixed(to[x], value ? value[x] / total[x] : 1, blend[x]);
+        to[x] = blend[x] > 0 && total[x] > 0 ? v : to[x];
     }
 }
 
