@@ -237,20 +237,27 @@ HF_INLINE uint32_t area_groups_in(const struct area_rows *rows, int x0, int x1)
     return ~(uint32_t)0 >> (AREA_GROUPS - 1 - last) & ~(uint32_t)0 << first;
 }
 
-// The columns of the next run of groups, which are then left out; from the first group's on.
-HF_INLINE struct area_columns area_groups_next(const struct area_rows *rows, uint32_t *groups)
+// The next run of bits, which are then left out: the first, and one more than the last. A carry runs through it.
+HF_INLINE struct area_columns area_bits_next(uint64_t *bits)
 {
-    const uint32_t begins = *groups & -*groups, ends = (*groups + begins) & ~*groups;
-    *groups &= ends ? -ends : 0;
-    return (struct area_columns){rows->wide * __builtin_ctz(begins),
-                                 hf_min(rows->wide * (ends ? __builtin_ctz(ends) : AREA_GROUPS), rows->n)};
+    const uint64_t begins = *bits & -*bits, ends = (*bits + begins) & ~*bits;
+    *bits &= ends ? -ends : 0;
+    return (struct area_columns){__builtin_ctzll(begins), ends ? __builtin_ctzll(ends) : 64};
+}
+
+// The columns of the next run of groups, which are then left out; from the first group's on.
+HF_INLINE struct area_columns area_groups_next(const struct area_rows *rows, uint64_t *groups)
+{
+    const struct area_columns run = area_bits_next(groups);
+    return (struct area_columns){rows->wide * run.x0, hf_min(rows->wide * run.x1, rows->n)};
 }
 
 // Zeros in groups of a row of a level's planes, where they are not 0 yet.
 static void area_level_clear(const struct hf_frame *f, const struct area_rows *rows, int y, uint32_t groups)
 {
-    uint32_t *dirty = &rows->dirty[y - rows->y0], left = groups & *dirty;
-    *dirty &= ~left;
+    uint32_t *dirty = &rows->dirty[y - rows->y0];
+    uint64_t left = groups & *dirty;
+    *dirty &= ~groups;
     while (left) {
         const struct area_columns run = area_groups_next(rows, &left);
         for (int i = 0; i < f->s->channels + 1 + hf_fields(f->s)->karis; i++) {
@@ -278,9 +285,10 @@ HF_INLINE uint64_t area_level_row(const struct hf_frame *f, const struct area_ro
     hf_row(&f->buf[HF_BUF_LEVEL_WEIGHT], 2, x0, y, weight);
     const struct area_limits limits = area_limits_of(l, i, 1);
     uint64_t filled = 0;
+    uint64_t left = groups;
     rows->dirty[y - rows->y0] |= groups;
-    while (groups) {
-        const struct area_columns run = area_groups_next(rows, &groups);
+    while (left) {
+        const struct area_columns run = area_groups_next(rows, &left);
         for (int x = run.x0; x < run.x1; x += VF_N) {
             const vf most = vf_load(coc[kind == AREA_NEAR ? HF_AREA_NEAR_MOST : HF_AREA_FAR_OF_LIGHT] + x);
             if (!vm_any(area_within(&limits, most))) {

@@ -31,12 +31,9 @@ static void tents_find(uint64_t blocks, int x, int n, struct tents_runs *runs)
     }
     uint64_t left = (blocks >> at | blocks << (-at & 63)) & (~(uint64_t)0 >> (64 - most));
     while (left) {
-        const uint64_t begins = left & -left,
-                       ends = (left + begins) & ~left;  // the first block, and the one after its run
-        const int x0 = 16 * (first + __builtin_ctzll(begins)) - x;
-        const int x1 = ends ? 16 * (first + __builtin_ctzll(ends)) - x : n;
-        runs->run[runs->count++] = (struct area_columns){hf_max(x0, 0), hf_min(x1, n)};
-        left &= ends ? -ends : 0;
+        const struct area_columns run = area_bits_next(&left);
+        runs->run[runs->count++] =
+            (struct area_columns){hf_max(16 * (first + run.x0) - x, 0), hf_min(16 * (first + run.x1) - x, n)};
     }
 }
 
