@@ -254,9 +254,7 @@ HF_INLINE void hex_add_lit(const struct hf_frame *f, const struct hf_hexagon_fie
     const vf zero = vf_zero(), sign = vf_set1(in->sign);
     for (const struct hf_hexagon_tap *t = l->taps; t < l->taps + l->count; t++) {
         const vf q = vf_mul(sign, vf_load(hf_at(in->radius, in->q, x + t->dx, y + t->dy)));
-        const vf b = vf_set1(t->b), most = vf_mul(b, vf_fma(limit.slope, q, limit.limit));
-        vf w = vf_min(vf_min(vf_sub(q, vf_set1(t->c)), most), b);
-        w = vf_mul(vf_max(w, zero), vf_set1(t->part));
+        const vf w = hex_count(q, t->c, t->b, t->part, &limit);
         const vf m = vf_div(vf_load(hf_at(in->weight, in->mean, x + t->dx, y + t->dy)), all);
         const vf light = vf_keep(vf_gt(w, zero), vf_mul(w, m));
         lit[0] = vf_add(lit[0], light);

@@ -102,6 +102,15 @@ struct hex_limit {
     vf limit, slope;  // the slope is negative
 };
 
+// As count_of() of blur.c: how much samples of radii q count at a tap.
+HF_INLINE vf hex_count(vf q, float c, float b, float part, const struct hex_limit *limit)
+{
+    vf w = vf_sub(q, vf_set1(c));
+    if (limit)
+        w = vf_min(w, vf_mul(vf_set1(b), vf_fma(limit->slope, q, limit->limit)));
+    return vf_mul(vf_max(vf_min(w, vf_set1(b)), vf_zero()), vf_set1(part));
+}
+
 // The body of hex_line() for one kind of line. The sums are its own until the end, so they stay in registers.
 HF_INLINE void hex_line_of(const struct hf_hexagon_field *in, const struct hex_run *run, const int channels,
                            const int first, const int rows, int x, int y, const struct hex_limit *limit,
@@ -155,10 +164,7 @@ HF_INLINE void hex_line_of(const struct hf_hexagon_field *in, const struct hex_r
         HF_UNROLL(4)
         for (int i = 0; i < rows; i++)
             if (p->rows >> i & 1) {
-                vf w = vf_sub(q, vf_set1(p->c[i]));
-                if (limit)
-                    w = vf_min(w, vf_mul(vf_set1(p->b[i]), vf_fma(limit[i].slope, q, limit[i].limit)));
-                w = vf_mul(vf_max(vf_min(w, vf_set1(p->b[i])), vf_zero()), vf_set1(p->part[i]));
+                const vf w = hex_count(q, p->c[i], p->b[i], p->part[i], limit ? &limit[i] : NULL);
                 for (int c = 0; c < channels; c++)
                     s[i].colour[c] = vf_fma(w, v[c], s[i].colour[c]);
                 s[i].a = vf_fma(w, weight, s[i].a);
