@@ -120,31 +120,8 @@ HF_INLINE vf fixed_sum(const uint16_t *rows, const int k, const int r, const vf 
     return sum;
 }
 
-// An input row d rows outside of the strip: it reaches the first r - d + 1 output rows from that edge on.
-HF_INLINE void fixed_edge(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
-                          const float *in, const ptrdiff_t *step, int d, int top, float *out, ptrdiff_t stride,
-                          int height)
-{
-    vf h[2 * FIXED_R + 2];
-    fixed_pairs(in, r, step, h);
-    if (disc)
-        fixed_runs(r, h);
-    __builtin_prefetch(in + 2 * VF_N);
-    const vf axis = disc ? vf_zero() : vf_mul(fixed_weight(weight, 1), h[0]);
-    HF_UNROLL(8)
-    for (int k = r; k >= 1; k--)
-        if (k >= d && k - d < height) {
-            float *p = out + (k - d) * stride;
-            const vf sum = fixed_sum(rows, k, r, h, weight, axis, disc);
-            if (k == r && top)
-                vf_store(p, sum);
-            else
-                vf_store(p, disc && k == r ? vf_mul(vf_add(vf_load(p), sum), scale) : vf_add(vf_load(p), sum));
-        }
-}
-
-// As fixed_edge, where the strip has r rows at least and d is known when this is compiled: sums[i] is that of the output row i from
-// that edge on. Only pairs that rows d to r of the weights have are added up.
+// An input row d rows outside of the strip, which is known when this is compiled: it reaches the first r - d + 1 output rows from that
+// edge on. sums[i] is that of output row i from there.
 HF_INLINE void fixed_edge_row(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
                               const float *in, const ptrdiff_t *step, const int d, const int top, vf *sums)
 {
@@ -166,15 +143,15 @@ HF_INLINE void fixed_edge_row(const uint16_t *rows, const int r, const int disc,
         }
 }
 
-// All input rows outside of a strip of r rows or more, above it or below it. in, out: the strip's first row from there on.
+// All input rows outside of the strip, above it or below it. in, out: the strip's first row from there on.
 HF_INLINE void fixed_edges(const uint16_t *rows, const int r, const int disc, const float *weight, vf scale,
                            const float *in, ptrdiff_t in_stride, const ptrdiff_t *step, const int top, float *out,
-                           ptrdiff_t out_stride)
+                           ptrdiff_t out_stride, int height)
 {
     vf sums[FIXED_R];
     HF_UNROLL(8)
     for (int i = 0; i < r; i++)
-        sums[i] = top ? vf_zero() : vf_load(out + i * out_stride);
+        sums[i] = top || i >= height ? vf_zero() : vf_load(out + i * out_stride);
 #define EDGE(i)                                                                                                        \
     fixed_edge_row(rows, r, disc, weight, scale, in - (top ? r + 1 - i : i) * in_stride, step,                         \
                    i > r ? r + 1                                                                                       \
@@ -191,7 +168,7 @@ HF_INLINE void fixed_edges(const uint16_t *rows, const int r, const int disc, co
     EDGE(8);
 #undef EDGE
     HF_UNROLL(8)
-    for (int i = 0; i < r; i++)
+    for (int i = 0; i < r && i < height; i++)
         vf_store(out + i * out_stride, sums[i]);
 }
 
@@ -234,15 +211,15 @@ HF_INLINE void fixed_inside(const uint16_t *rows, const int r, const int disc, c
 typedef void fixed_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, ptrdiff_t step,
                           float *out, ptrdiff_t out_stride, int height);
 
-// name_column, of these rows. steps: NULL where the step is 1, or &step. Four functions: inlined into one, the compiler keeps the
+// name_column, of these rows. steps: NULL where the step is 1, or &step. Three functions: inlined into one, the compiler keeps the
 // weights of all rows as vectors, and spills them.
 #define FIXED_COLUMN(name, rows, r, disc, steps)                                                                       \
-    static                                                                                                             \
-        __attribute__((noinline)) void name##_edge(const float *weight, float scale, const float *in, ptrdiff_t step,  \
-                                                   int d, int top, float *out, ptrdiff_t stride, int height)           \
+    static __attribute__((noinline)) void name##_top(const float *weight, float scale, const float *in,                \
+                                                     ptrdiff_t in_stride, ptrdiff_t step, float *out,                  \
+                                                     ptrdiff_t out_stride, int height)                                 \
     {                                                                                                                  \
         (void)step;                                                                                                    \
-        fixed_edge(rows, r, disc, weight, vf_set1(scale), in, steps, d, top, out, stride, height);                     \
+        fixed_edges(rows, r, disc, weight, vf_set1(scale), in, in_stride, steps, 1, out, out_stride, height);          \
     }                                                                                                                  \
     static __attribute__((noinline)) void name##_inside(const float *weight, float scale, const float *in,             \
                                                         ptrdiff_t in_stride, ptrdiff_t step, float *out,               \
@@ -251,36 +228,21 @@ typedef void fixed_column(const float *weight, float scale, const float *in, ptr
         (void)step;                                                                                                    \
         fixed_inside(rows, r, disc, weight, vf_set1(scale), in, in_stride, steps, out, out_stride, height);            \
     }                                                                                                                  \
-    static __attribute__((noinline)) void name##_top(const float *weight, float scale, const float *in,                \
-                                                     ptrdiff_t in_stride, ptrdiff_t step, float *out,                  \
-                                                     ptrdiff_t out_stride)                                             \
-    {                                                                                                                  \
-        (void)step;                                                                                                    \
-        fixed_edges(rows, r, disc, weight, vf_set1(scale), in, in_stride, steps, 1, out, out_stride);                  \
-    }                                                                                                                  \
     static __attribute__((noinline)) void name##_bottom(const float *weight, float scale, const float *in,             \
                                                         ptrdiff_t in_stride, ptrdiff_t step, float *out,               \
-                                                        ptrdiff_t out_stride)                                          \
+                                                        ptrdiff_t out_stride, int height)                              \
     {                                                                                                                  \
         (void)step;                                                                                                    \
-        fixed_edges(rows, r, disc, weight, vf_set1(scale), in, in_stride, steps, 0, out, out_stride);                  \
+        fixed_edges(rows, r, disc, weight, vf_set1(scale), in, in_stride, steps, 0, out, out_stride, height);          \
     }                                                                                                                  \
     static void name##_column(const float *weight, float scale, const float *in, ptrdiff_t in_stride, ptrdiff_t step,  \
                               float *out, ptrdiff_t out_stride, int height)                                            \
     {                                                                                                                  \
-        if (height >= r) {                                                                                             \
-            name##_top(weight, scale, in, in_stride, step, out, out_stride);                                           \
-            name##_inside(weight, scale, in, in_stride, step, out, out_stride, height);                                \
-            name##_bottom(weight, scale, in + (height - 1) * in_stride, -in_stride, step,                              \
-                          out + (height - 1) * out_stride, -out_stride);                                               \
-            return;                                                                                                    \
-        }                                                                                                              \
-        for (int d = r; d >= 1; d--)                                                                                   \
-            name##_edge(weight, scale, in - d * in_stride, step, d, 1, out, out_stride, height);                       \
+        const ptrdiff_t last = height - 1;                                                                             \
+        name##_top(weight, scale, in, in_stride, step, out, out_stride, height);                                       \
         name##_inside(weight, scale, in, in_stride, step, out, out_stride, height);                                    \
-        for (int d = 1; d <= r; d++)                                                                                   \
-            name##_edge(weight, scale, in + (height - 1 + d) * in_stride, step, d, 0, out + (height - 1) * out_stride, \
-                        -out_stride, height);                                                                          \
+        name##_bottom(weight, scale, in + last * in_stride, -in_stride, step, out + last * out_stride, -out_stride,    \
+                      height);                                                                                         \
     }
 
 // The weights as columns take them.
