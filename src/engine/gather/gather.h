@@ -211,9 +211,10 @@ extern const struct hf_engine_def hf_gather_engine;
 
 // Half-resolution colour stays below this, so that no sum of millions passes the largest float.
 #define HF_AREA_LARGEST 0x1p104f
-// The most that a level of what near pixels hide counts: the smallest counts most, the sixth power of the largest radius, 2^60 for
-// one of 1024. What near pixels hide is the difference of three colours, at most 3 x 2^104; all levels together count at most
-// 64 / 63 of the smallest; and in a frame's corner a quarter of a kernel stands for all of it. So sums are at most 2^124.
+// Sums of what near pixels hide stay finite because no sample counts more than this there. By itself one of the smallest level,
+// which counts most, would count by the sixth power of the largest radius: 2^60 for one of 1024. A sample is the difference of
+// three colours, at most 3 x 2^104; all levels together count at most 64 / 63 of the smallest; and in a frame's corner a quarter of
+// a kernel stands for all of it. So sums are at most 2^124.
 #define HF_COUNTS_MOST 0x1p16f
 
 #endif

@@ -237,8 +237,8 @@ static inline struct hf_rect hf_hexagon_rect(const struct hf_setup *s, struct hf
 #define HEXAGON_ALL 2.0f
 // The least far mean radius. It reaches no other pixel.
 #define HEXAGON_LEAST_MEAN 0.25f
-// Far mean radii: what shines along less than TRACE pixels of a line is but a trace of light, which decides nothing. But a pixel
-// is dark only if it finds 1 / DARK times what it has itself.
+// Far mean radii: what shines along less than TRACE pixels of a line is but a trace of light, which decides nothing. Only
+// dark pixels ask for that: those whose lines find more than 1 / DARK times the light over radius that they have themselves.
 #define HEXAGON_TRACE 0x1p-8f
 #define HEXAGON_DARK 0x1p-16f
 // A sample of at least this weight counts as a whole pixel.

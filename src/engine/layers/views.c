@@ -250,7 +250,7 @@ static float total_at(const struct hf_view_block *b, ptrdiff_t at)
     return b->c.l->key.cat_eye > 0 ? b->total[at] : 1;
 }
 
-// What views see in the place of what slices made, as far as they count. What slices left to views does not.
+// Blend what views see into what slices made. Where slices left all to views, their memory may hold anything: it is not used.
 static float mixed(float own, float seen, float blend)
 {
     return blend < 1 ? (1 - blend) * own + blend * seen : seen;
