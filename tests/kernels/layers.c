@@ -514,8 +514,7 @@ void layers_call(struct world *w, const struct kernels *k, enum arena a, int whi
         s->nearest(in, in + 4, w->n, out);
         return;
     case LAYERS_EXTREMES:
-        w->result[a].returned = s->extremes(in[0], now.with ? in[8] : NULL, now.with ? line(w, a, 16) : NULL, stride(w),
-                                            w->n, now.rows, (struct hf_layers_range *)(void *)out) != 0;
+        s->extremes(in[0], now.with ? in[8] : NULL, stride(w), w->n, now.rows, (struct hf_layers_range *)(void *)out);
         return;
     case LAYERS_INSIDE:
         w->result[a].returned = s->inside(in[0], now.with ? in[8] : NULL, stride(w), w->n, now.rows, 20 * now.off,

@@ -174,6 +174,8 @@ static void keep_square(const struct hf_cell *c, const struct hf_build *b, int y
             memset(source_at(c, i, s->tx * TILE + apart - s->dx, y), 0, sizeof(float) * HF_LAYERS_SQUARE);
         else
             memset(source_at(c, i, s->tx * TILE, y), 0, sizeof(float) * TILE);
+    if (!inside)
+        *hf_layers_map_at(&c->filled, s->tx, y / 2) = 0;
 }
 
 static void build_row(const struct hf_cell *c, const struct hf_build *b, int ty, int from, int y0, int y1)
@@ -239,6 +241,11 @@ static void draw_pair(const struct hf_cell *c, const struct hf_build *b, int ty,
     const int size = TILE >> s->level, margin = s->level ? MARGIN : 0;
     const int last = c->columns * size + margin, at = ty * size + y;
     int x0 = 0, x1 = 0;
+    if (b->square) {
+        if (*hf_layers_map_at(&c->filled, b->square->tx, y / 2) && hf_layers_square_span(c, s, b->square, &x0, &x1))
+            draw_span(c, b, at, y, x0, x1, to);
+        return;
+    }
     for (int tx = c->box.x0, end; (end = hf_layers_next_run(&c->filled, &tx, y / 2, c->box.x1, ~0)) > tx; tx = end) {
         int a = tx * size - s->reach, z = end * size + s->reach;
         a = a > -margin ? a : -margin;

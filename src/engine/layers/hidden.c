@@ -351,11 +351,10 @@ void hf_layers_smooth_c(const float *const in[13][6], const float *const along[2
     }
 }
 
-int hf_layers_extremes_c(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
-                         int rows, struct hf_layers_range *out)
+void hf_layers_extremes_c(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows,
+                          struct hf_layers_range *out)
 {
     struct hf_layers_range range = *out;
-    int bright = 0;
     for (int y = 0; y < rows; y++)
         for (int x = 0; x < n; x++) {
             const ptrdiff_t at = y * stride + x;
@@ -363,10 +362,8 @@ int hf_layers_extremes_c(const float *radius, const float *weight, const float *
             const int counts = !weight || weight[at] > 0;
             range.low = counts && r < range.low ? r : range.low;
             range.high = counts && r > range.high ? r : range.high;
-            bright |= share && share[at] > 0;
         }
     *out = range;
-    return bright;
 }
 
 int hf_layers_inside_c(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,

@@ -456,10 +456,10 @@ HF_INLINE vm layers_first(int n)
     return vf_lt(vf_load(lane), vf_set1((float)n));
 }
 
-static int layers_extremes_simd(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
-                                int rows, struct hf_layers_range *out)
+static void layers_extremes_simd(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows,
+                                 struct hf_layers_range *out)
 {
-    vf low = vf_set1(out->low), high = vf_set1(out->high), bright = vf_zero();
+    vf low = vf_set1(out->low), high = vf_set1(out->high);
     float lows[VF_N];
     for (int x = 0; x < n; x += VF_N) {
         const vm own = layers_first(n - x);
@@ -469,15 +469,12 @@ static int layers_extremes_simd(const float *radius, const float *weight, const 
             const vm some = vm_and(own, vf_gt(weight ? vf_load(weight + at) : vf_set1(1), vf_zero()));
             low = vf_min(vf_select(some, r, low), low);
             high = vf_max(vf_select(some, r, high), high);
-            if (share)
-                bright = vf_max(vf_keep(own, vf_load(share + at)), bright);
         }
     }
     vf_store(lows, low);
     for (int i = 0; i < VF_N; i++)
         out->low = lows[i] < out->low ? lows[i] : out->low;
     out->high = vf_most(high);
-    return vf_most(bright) > 0;
 }
 
 static int layers_inside_simd(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,

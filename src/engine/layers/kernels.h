@@ -67,9 +67,8 @@ struct hf_pattern_tap;
 typedef void hf_layers_alike(const struct hf_pattern_place *place, const struct hf_pattern_tap *tap, int count,
                              const float *const in[6], int channels, int n, float *sum, float *off);
 // Widen `out` by the least and largest radius of samples with weight, in rows of n. Without `weight` all samples count.
-// Returns whether a share is positive; share may be NULL.
-typedef int hf_layers_extremes(const float *radius, const float *weight, const float *share, ptrdiff_t stride, int n,
-                               int rows, struct hf_layers_range *out);
+typedef void hf_layers_extremes(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows,
+                                struct hf_layers_range *out);
 // Whether rows of n contain a sample with weight and a radius between `before` and `after`. Without `weight` all samples
 // have some.
 typedef int hf_layers_inside(const float *radius, const float *weight, ptrdiff_t stride, int n, int rows, float before,

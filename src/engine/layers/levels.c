@@ -89,7 +89,7 @@ struct hf_layers_range hf_hidden_range(const struct hf_hidden_band *b, const flo
                                        ptrdiff_t stride, int n, int rows)
 {
     struct hf_layers_range range = {HUGE_VALF, -HUGE_VALF};
-    hf_layers_kernels(b->f)->extremes(radius, weight, NULL, stride, n, rows, &range);
+    hf_layers_kernels(b->f)->extremes(radius, weight, stride, n, rows, &range);
     return range;
 }
 

@@ -5,16 +5,14 @@
 
 #include "engine/layers/parts.h"
 
-// Draw the shares of one radius in the used tiles, or in a square of the only one, at full resolution.
-static void draw(const struct hf_cell *c, int number, const struct hf_layers_square *square)
+// What the shares of one radius are drawn from.
+static struct hf_build build_of(const struct hf_cell *c, int number, const struct hf_layers_square *square)
 {
-    const struct hf_build b = {.s = &c->l->shine[number],
-                               .set = &c->samples->seen,
-                               .weight = c->samples->share,
-                               .channels = c->l->channels + 1,
-                               .square = square};
-    hf_layers_clear_tiles(c, &c->shone, &c->shine, 0, 0, b.channels);
-    hf_layers_draw_slice(c, &b, &c->shine);
+    return (struct hf_build){.s = &c->l->shine[number],
+                             .set = &c->samples->seen,
+                             .weight = c->samples->share,
+                             .channels = c->l->channels + 1,
+                             .square = square};
 }
 
 // Whether shares of one radius are left out of the slices of a stack, which have less than full resolution.
@@ -50,41 +48,80 @@ static void begin_light(const struct hf_cell *c, int stack)
                 continue;
             *lit = 1;
             for (int y = ty * TILE; y < (ty + 1) * TILE; y++)
-                for (int i = 0; i < c->l->channels + 2; i++)
+                for (int i = 0; i <= c->l->channels; i++)
                     memset(w->at + y * w->row + i * w->channel + tx * TILE, 0, sizeof(float) * TILE);
         }
 }
 
+// Whether a part of the shares of one radius lies in the middle stack, and must not cover the rest.
+static int is_lifted(const struct hf_cell *c, int stack, int number)
+{
+    return stack == FAR && c->covering && number == c->l->slice[c->l->last + 1].shine;
+}
+
 // Add the drawn shares of one radius to a stack's light, or subtract what is cut from those of t, which it holds already.
-static void add_light(struct hf_cell *c, int stack, int number, const struct hf_layers_cut *t)
+static void add_light(struct hf_cell *c, int stack, int number, struct hf_rect r, const struct hf_layers_cut *t)
 {
     const struct hf_window *to = &c->light[stack];
-    const int channels = c->l->channels,
-              lifted = stack == FAR && c->covering && number == c->l->slice[c->l->last + 1].shine;
-    const struct hf_rect r = t ? t->tiles : (struct hf_rect){0, 0, c->columns, c->rows};
-    for (int ty = r.y0; ty < r.y1 && !hf_stopped(c->l->stop); ty++)
-        for (int tx = r.x0, end; (end = hf_layers_next_run(&c->shone, &tx, ty, r.x1, 1)) > tx; tx = end) {
-            const int x0 = tx * TILE, n = (end - tx) * TILE;
-            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
-                const float *part = part_of_row(c, t, lifted, x0, n, y);
-                for (int i = 0; i < channels + (t ? 1 : 2); i++) {
-                    const float *in = c->shine.at + y * c->shine.row + hf_min(i, channels) * c->shine.channel + x0;
-                    float *out = to->at + y * to->row + i * to->channel;
-                    (t ? c->k->dim : c->k->light)(part, in, n, out + x0);
-                }
-            }
-        }
+    const int n = r.x1 - r.x0, lifted = is_lifted(c, stack, number);
+    for (int y = r.y0; y < r.y1; y++) {
+        const float *part = part_of_row(c, t, lifted, r.x0, n, y);
+        for (int i = 0; i <= c->l->channels; i++)
+            (t ? c->k->dim : c->k->light)(part, c->shine.at + y * c->shine.row + i * c->shine.channel + r.x0, n,
+                                          to->at + y * to->row + i * to->channel + r.x0);
+    }
+}
+
+// Draw shares of one radius in a stack's light. Those that are lifted are drawn by themselves first.
+static void draw_light(struct hf_cell *c, int stack, int number)
+{
+    const struct hf_build b = build_of(c, number, NULL);
+    begin_light(c, stack);
+    if (!is_lifted(c, stack, number)) {
+        hf_layers_draw_slice(c, &b, &c->light[stack]);
+        return;
+    }
+    hf_layers_clear_tiles(c, &c->shone, &c->shine, 0, 0, b.channels);
+    hf_layers_draw_slice(c, &b, &c->shine);
+    for (int ty = 0; ty < c->rows && !hf_stopped(c->l->stop); ty++)
+        for (int tx = 0, end; (end = hf_layers_next_run(&c->shone, &tx, ty, c->columns, 1)) > tx; tx = end)
+            add_light(c, stack, number, (struct hf_rect){tx * TILE, ty * TILE, end * TILE, (ty + 1) * TILE}, NULL);
 }
 
 void hf_layers_cut_light(struct hf_cell *c, int stack, const struct hf_layers_square *of, const struct hf_layers_cut *t)
 {
     const struct hf_layers *l = c->l;
-    for (int i = 0; i < l->shines && !hf_stopped(l->stop); i++)
-        if (is_of(l, stack, i) && l->shine[i].before < of->radii.high && of->radii.low < l->shine[i].after &&
-            hf_layers_use_tile(c, of->tx, of->ty, i) && hf_layers_mark_touched(c, &l->shine[i], &c->shone)) {
-            draw(c, i, of);
-            add_light(c, stack, i, t);
-        }
+    for (int i = 0; i < l->shines && !hf_stopped(l->stop); i++) {
+        const struct hf_slice *s = &l->shine[i];
+        int x0, x1;
+        if (!is_of(l, stack, i) || s->before >= of->radii.high || of->radii.low >= s->after ||
+            !hf_layers_use_tile(c, of->tx, of->ty, i) || !hf_layers_square_span(c, s, of, &x0, &x1))
+            continue;
+        const struct hf_build b = build_of(c, i, of);
+        const int top = of->ty * TILE + of->dy - s->rows, low = top + HF_LAYERS_SQUARE + 2 * s->rows;
+        const struct hf_rect r = {hf_max(x0, t->tiles.x0 * TILE), hf_max(top, t->tiles.y0 * TILE),
+                                  hf_min(x1, t->tiles.x1 * TILE), hf_min(low, t->tiles.y1 * TILE)};
+        if (r.x0 >= r.x1)
+            continue;
+        for (int y = hf_max(top, 0); y < hf_min(low, c->rows * TILE); y++)
+            for (int k = 0; k < b.channels; k++)
+                memset(c->shine.at + y * c->shine.row + k * c->shine.channel + x0, 0,
+                       sizeof(float) * (size_t)(x1 - x0));
+        hf_layers_draw_slice(c, &b, &c->shine);
+        add_light(c, stack, i, r, t);
+    }
+}
+
+// What light behind the focus would cover if nothing were before it: what it covers before lamps are cut.
+static void keep_cover(const struct hf_cell *c)
+{
+    const struct hf_window *w = &c->light[FAR];
+    for (int ty = 0; ty < c->rows; ty++)
+        for (int tx = 0, end; (end = hf_layers_next_run(&c->lit[FAR], &tx, ty, c->columns, 1)) > tx; tx = end)
+            for (int y = ty * TILE; y < (ty + 1) * TILE; y++) {
+                float *p = w->at + y * w->row + c->l->channels * w->channel + tx * TILE;
+                memcpy(p + w->channel, p, sizeof(float) * (size_t)((end - tx) * TILE));
+            }
 }
 
 void hf_layers_draw_lights(struct hf_cell *c, int stack)
@@ -94,11 +131,11 @@ void hf_layers_draw_lights(struct hf_cell *c, int stack)
     for (int i = 0; l->set.highlights && i < l->shines && !hf_stopped(l->stop); i++)
         if (is_of(l, stack, i) && hf_layers_mark_used(c, i, HF_KIND_SHARES) &&
             hf_layers_mark_touched(c, &l->shine[i], &c->shone)) {
-            draw(c, i, NULL);
-            begin_light(c, stack);
-            add_light(c, stack, i, NULL);
+            draw_light(c, stack, i);
             any = 1;
         }
+    if (any && stack == FAR)
+        keep_cover(c);
     if (any)
         hf_layers_cut_lamps(c, stack);
 }

@@ -34,39 +34,33 @@ static void mark_slices(const struct hf_frame *f, const struct hf_slice *slice, 
     }
 }
 
-static const struct hf_layers_range none = {HUGE_VALF, -HUGE_VALF};
-
 // Set the bits of the slices of a tile's samples, if it may have some; returns the range of their radii.
-static struct hf_layers_range mark_tile(const struct hf_frame *f, const struct hf_slice *slice, struct tile t, int some,
-                                        uint64_t *bits)
+static struct hf_layers_range mark_tile(const struct hf_frame *f, const struct hf_slice *slice, int slices,
+                                        struct tile t, int some, uint64_t *bits)
 {
-    struct hf_layers_range range = none;
+    struct hf_layers_range range = {HUGE_VALF, -HUGE_VALF};
     if (some)
-        hf_layers_kernels(f)->extremes(t.radius, t.weight, NULL, t.stride, t.n, t.rows, &range);
-    mark_slices(f, slice, hf_layers(f->s)->slices, t, range, bits);
+        hf_layers_kernels(f)->extremes(t.radius, t.weight, t.stride, t.n, t.rows, &range);
+    mark_slices(f, slice, slices, t, range, bits);
     return range;
 }
 
 void hf_layers_mark_seen(const struct hf_frame *f, struct hf_rect r, const struct hf_layers_any *any)
 {
     const struct hf_layers *l = hf_layers(f->s);
-    const struct hf_layers_kernels *k = hf_layers_kernels(f);
     const struct hf_buf *seen = &f->buf[HF_LAYERS_BUF_SEEN_AT], *mixed = &f->buf[HF_LAYERS_BUF_MIXED_AT];
     for (int ty = 2 * r.y0 / TILE; ty * TILE < hf_min(2 * r.y1, f->s->height) && !hf_stopped(l->stop); ty++)
         for (int tx = 2 * r.x0 / TILE; tx * TILE < hf_min(2 * r.x1, f->s->width); tx++) {
             const int x = tx * TILE, y = ty * TILE, at = ty * l->columns + tx, mark = at * l->words;
             const int n = hf_min(TILE, f->s->width - x), rows = hf_min(TILE, f->s->height - y);
             const int mixes = any->mixed[tx - 2 * r.x0 / TILE], shines = any->bright[tx - 2 * r.x0 / TILE];
-            const struct tile m = tile_of(mixed, 0, x, y, n, rows);
-            const float *share = shines ? hf_at(seen, 2, x, y) : NULL;
             struct tile s = tile_of(seen, 0, x, y, n, rows);
             s.weight = mixes ? s.weight : NULL;
-            l->seen_range[at] = l->mixed_range[at] = none;
-            const int bright = k->extremes(s.radius, s.weight, share, s.stride, n, rows, &l->seen_range[at]);
-            mark_slices(f, l->slice, l->slices, s, l->seen_range[at], &l->seen_marks[mark]);
-            l->mixed_range[at] = mark_tile(f, l->slice, m, mixes, &l->mixed_marks[mark]);
-            mark_slices(f, l->shine, l->shines, tile_of(seen, share ? 2 : 0, x, y, n, rows),
-                        bright ? l->seen_range[at] : none, &l->share_marks[at * l->share_words]);
+            l->seen_range[at] = mark_tile(f, l->slice, l->slices, s, 1, &l->seen_marks[mark]);
+            l->mixed_range[at] =
+                mark_tile(f, l->slice, l->slices, tile_of(mixed, 0, x, y, n, rows), mixes, &l->mixed_marks[mark]);
+            mark_tile(f, l->shine, l->shines, tile_of(seen, 2, x, y, n, rows), shines,
+                      &l->share_marks[at * l->share_words]);
         }
 }
 
@@ -135,8 +129,8 @@ void hf_layers_mark_hidden(const struct hf_frame *f, struct hf_rect r, const uin
             const struct tile of[2] = {tile_of(hidden, 0, x, y, n, rows), tile_of(beyond, 0, x, y, n, rows)};
             const int i = tx - r.x0 / size;
             const struct hf_layers_range range[2] = {
-                mark_tile(f, slice, of[0], !some || some[0][i], &l->hidden_marks[mark]),
-                mark_tile(f, slice, of[1], !some || some[1][i], &l->beyond_marks[mark])};
+                mark_tile(f, slice, l->slices, of[0], !some || some[0][i], &l->hidden_marks[mark]),
+                mark_tile(f, slice, l->slices, of[1], !some || some[1][i], &l->beyond_marks[mark])};
             if (l->set.views)
                 note_crossing(l, of, range, ty * l->columns + tx);
         }

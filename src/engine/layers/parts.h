@@ -158,6 +158,10 @@ int hf_layers_next_run(const struct hf_tile_map *m, int *tx, int ty, int end, in
 void hf_layers_clip_rows(const struct hf_cell *c, int level, int ty, int *y0, int *y1);
 // Widen a span to whole vectors, so that no lane lies in two spans.
 void hf_layers_align_span(int *x0, int *x1);
+// The columns of the cell that a square's samples reach, blurred at full resolution, in whole vectors. Returns 0 if there are
+// none.
+int hf_layers_square_span(const struct hf_cell *c, const struct hf_slice *s, const struct hf_layers_square *of, int *x0,
+                          int *x1);
 // The next span of columns that runs of tiles cover. Returns 0 if there is none.
 int hf_layers_next_span(const struct hf_cell *c, const struct hf_tile_map *m, int level, int ty, struct hf_span *s);
 

@@ -215,6 +215,18 @@ void hf_layers_align_span(int *x0, int *x1)
     *x1 = (*x1 + LEFT + 15) / 16 * 16 - LEFT;
 }
 
+int hf_layers_square_span(const struct hf_cell *c, const struct hf_slice *s, const struct hf_layers_square *of, int *x0,
+                          int *x1)
+{
+    const int x = of->tx * TILE + of->dx;
+    *x0 = hf_max(x - s->reach, 0);
+    *x1 = hf_min(x + HF_LAYERS_SQUARE + s->reach, c->columns * TILE);
+    if (*x0 >= *x1)
+        return 0;
+    hf_layers_align_span(x0, x1);
+    return 1;
+}
+
 int hf_layers_next_span(const struct hf_cell *c, const struct hf_tile_map *m, int level, int ty, struct hf_span *s)
 {
     const int margin = level ? MARGIN : 0, size = TILE >> level, last = c->columns * size + margin;
