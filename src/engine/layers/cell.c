@@ -57,6 +57,7 @@ static void place_lights(struct hf_cell *c, struct hf_scratch *m)
     c->shine = take_window(m, width, height, c->l->channels + 1);
     for (int i = 0; i < 2; i++)
         c->light[i] = take_window(m, width, height, c->l->channels + 2);
+    c->passed = take_map(m, c->columns, c->rows, c->l->most_tiles);
     c->cut_off = hf_layers_take(m, hf_layers_cut_floats(c), 0);
     c->cover = hf_layers_take(m, hf_layers_cover_floats(c), 0);
 }

@@ -23,6 +23,7 @@ struct lamp {
     float x, y, radius;        // x, y: in pixels from its tile's corner, so that no cell rounds them otherwise
     float reach;               // how far its disc goes
     struct hf_layers_cut cut;  // `tiles`: those that its disc reaches
+    struct hf_rect passed;     // the tiles in which its rays pass the slice that is looked at
     int any;                   // whether something is cut
 };
 
@@ -36,16 +37,13 @@ struct cover {
 
 // ---- what covers ----
 
-// Set the size of the coverage of a slice: of the tiles from which its blur may reach tiles r. Tiles beyond the frame repeat
-// each other, so the first of them stand for all.
-static void shape_cover(const struct hf_cell *c, const struct hf_slice *s, struct hf_rect r, struct cover *p)
+// Set the size of the coverage of a slice.
+static void shape_cover(const struct hf_cell *c, const struct hf_slice *s, struct hf_rect tiles, struct cover *p)
 {
-    const struct hf_rect most = hf_layers_tiles_with_samples(c);
-    const int n = hf_layers_tiles_around(s), size = TILE >> s->level;
-    p->tiles = (struct hf_rect){hf_max(r.x0 - n, most.x0), hf_max(r.y0 - n, most.y0), hf_min(r.x1 + n, most.x1 + 1),
-                                hf_min(r.y1 + n, most.y1 + 1)};
-    p->columns = (p->tiles.x1 - p->tiles.x0) * size;
-    p->rows = (p->tiles.y1 - p->tiles.y0) * size;
+    const int size = TILE >> s->level;
+    p->tiles = tiles;
+    p->columns = (tiles.x1 - tiles.x0) * size;
+    p->rows = (tiles.y1 - tiles.y0) * size;
     p->at = c->cover;
     p->first = (int *)(c->cover + (ptrdiff_t)p->columns * p->rows);
     p->end = p->first + p->rows;
@@ -83,7 +81,24 @@ static void take_row(void *cookie, const float *in, ptrdiff_t channel, int x, in
     p->end[row] = hf_max(end - t->x0, p->end[row]);
 }
 
-// Take the weights of a slice's samples of a kind, if they reach the cell. any: whether something is there already.
+// What rays pass: a tile that may matter, and one that has samples.
+enum { WANTED = 1, HELD = 2 };
+
+// Leave out used tiles that no ray passes, and note the others. Returns 0 if there are none.
+static int keep_passed(const struct hf_cell *c, struct hf_rect r)
+{
+    uint8_t any = 0;
+    for (int ty = r.y0; ty < r.y1; ty++)
+        for (int tx = r.x0; tx < r.x1; tx++) {
+            uint8_t *used = hf_layers_map_at(&c->used, tx, ty), *passed = hf_layers_map_at(&c->passed, tx, ty);
+            *used = *passed & WANTED ? *used : 0;
+            *passed |= *used ? HELD : 0;
+            any |= *used;
+        }
+    return any;
+}
+
+// Take the weights of a slice's samples of a kind where rays pass. any: whether something is there already.
 static int take_weights(struct hf_cell *c, int i, enum hf_kind kind, const struct cover *p, int any)
 {
     const struct hf_layers *l = c->l;
@@ -95,7 +110,7 @@ static int take_weights(struct hf_cell *c, int i, enum hf_kind kind, const struc
         return any;
     c->box = (struct hf_rect){hf_max(c->box.x0, p->tiles.x0), hf_max(c->box.y0, p->tiles.y0),
                               hf_min(c->box.x1, p->tiles.x1), hf_min(c->box.y1, p->tiles.y1)};
-    if (c->box.x0 >= c->box.x1 || c->box.y0 >= c->box.y1)
+    if (!keep_passed(c, c->box))
         return any;
     for (int y = 0; !any && y < p->rows; y++) {
         p->first[y] = p->columns;
@@ -323,17 +338,71 @@ static size_t floats_of(const struct lamp *p)
     return (size_t)p->cut.row * (size_t)((p->cut.tiles.y1 - p->cut.tiles.y0) * TILE / 2 + 2);
 }
 
-// The tiles of the cell that discs of lamps behind a slice reach.
-static struct hf_rect reached_behind(const struct hf_cell *c, const struct hf_slice *s, const struct lamp *lamp,
-                                     int count)
+// Where along an axis rays from tiles `from` up to `to` to a lamp pass a slice: this part of their way from the pixel, and at most
+// so far from it. Sets the first tile and the one behind the last, of those from `low` up to `high`.
+static void passed_along(float lamp, int from, int to, float part, float most, int level, int low, int high, int *t0,
+                         int *t1)
 {
-    struct hf_rect r = {c->columns, c->rows, 0, 0};
-    for (int i = 0; i < count; i++)
+    // The place changes evenly with the pixel, but for two bends. A pixel of half resolution more is cut on either side.
+    const float bend = most / fabsf(part), first = (float)(from * TILE - 2), end = (float)(to * TILE + 2),
+                pixel[4] = {first, end, hf_edges_between(lamp - bend, first, end),
+                            hf_edges_between(lamp + bend, first, end)};
+    const float more = (float)(2 << level);  // two samples
+    float least = HUGE_VALF, last = -HUGE_VALF;
+    for (int i = 0; i < 4; i++) {
+        const float at = pixel[i] + hf_edges_between(part * (lamp - pixel[i]), -most, most);
+        least = at < least ? at : least;
+        last = hf_larger(at, last);
+    }
+    *t0 = hf_layers_within(tile_of(least - more), low, high - 1);
+    *t1 = hf_layers_within(tile_of(last + more), *t0, high - 1) + 1;
+}
+
+// The tiles in which rays of a lamp's disc in the cell pass a slice before it. Tiles beyond the frame repeat each other, so the
+// first of them stand for all.
+static struct hf_rect passed_by(const struct hf_cell *c, const struct hf_slice *s, const struct lamp *p)
+{
+    const struct hf_rect most = hf_layers_tiles_with_samples(c), cut = p->cut.tiles;
+    const int n = hf_layers_tiles_around(s);
+    const float x = p->x + (float)(p->of.tx * TILE), y = p->y + (float)(p->of.ty * TILE), part = s->radius / p->radius,
+                radius = fabsf(s->radius);
+    struct hf_rect r;
+    passed_along(x, cut.x0, cut.x1, part, radius * c->l->wide, s->level, hf_max(-n, most.x0),
+                 hf_min(c->columns + n, most.x1 + 1), &r.x0, &r.x1);
+    passed_along(y, cut.y0, cut.y1, part, radius, s->level, hf_max(-n, most.y0), hf_min(c->rows + n, most.y1 + 1),
+                 &r.y0, &r.y1);
+    return r;
+}
+
+// Mark the tiles in which rays of lamps behind a slice pass it. Returns the least rectangle around them.
+static struct hf_rect mark_passed(struct hf_cell *c, const struct hf_slice *s, struct lamp *lamp, int count)
+{
+    const int n = hf_layers_tiles_around(s);
+    struct hf_rect r = {c->columns + n, c->rows + n, -n, -n};
+    for (int i = 0; i < count; i++) {
+        lamp[i].passed = (struct hf_rect){0};
         if (is_before(c->l, &lamp[i], s) > 0) {
-            const struct hf_rect a = lamp[i].cut.tiles;
+            const struct hf_rect a = lamp[i].passed = passed_by(c, s, &lamp[i]);
             r = (struct hf_rect){hf_min(r.x0, a.x0), hf_min(r.y0, a.y0), hf_max(r.x1, a.x1), hf_max(r.y1, a.y1)};
         }
+    }
+    for (int ty = r.y0; ty < r.y1; ty++)
+        memset(hf_layers_map_at(&c->passed, r.x0, ty), 0, (size_t)hf_max(r.x1 - r.x0, 0));
+    for (int i = 0; i < count; i++)
+        for (int ty = lamp[i].passed.y0; ty < lamp[i].passed.y1; ty++)
+            memset(hf_layers_map_at(&c->passed, lamp[i].passed.x0, ty), WANTED,
+                   (size_t)(lamp[i].passed.x1 - lamp[i].passed.x0));
     return r;
+}
+
+// Whether one of a lamp's rays may pass samples of the slice.
+static int passes_samples(const struct hf_cell *c, const struct lamp *p)
+{
+    for (int ty = p->passed.y0; ty < p->passed.y1; ty++)
+        for (int tx = p->passed.x0; tx < p->passed.x1; tx++)
+            if (*hf_layers_map_at(&c->passed, tx, ty) & HELD)
+                return 1;
+    return 0;
 }
 
 // Look at lamps, and cut their discs.
@@ -345,14 +414,15 @@ static void cut_discs(struct hf_cell *c, int stack, struct lamp *lamp, int count
         struct cover p;
         if (s->level == 0)
             continue;
-        const struct hf_rect r = reached_behind(c, s, lamp, count);
+        const struct hf_rect r = mark_passed(c, s, lamp, count);
         if (r.x0 >= r.x1 || r.y0 >= r.y1)
             continue;
         shape_cover(c, s, r, &p);
         int any = take_weights(c, i, HF_KIND_SEEN, &p, 0);
         any = l->levels ? take_weights(c, i, HF_KIND_HIDDEN, &p, any) : any;
         for (int k = 0; any && k < count; k++)
-            cut_lamp(c, &p, s, &lamp[k]);
+            if (passes_samples(c, &lamp[k]))
+                cut_lamp(c, &p, s, &lamp[k]);
     }
     for (int k = 0; k < count; k++)
         if (lamp[k].any)

@@ -163,36 +163,37 @@ void hf_layers_add_near_cover(const struct hf_cell *c, int tx, int end, int y, f
                     out + (tx - from) * TILE);
 }
 
-// How much of the light behind the focus a row of a tile shows.
-static void shown(const struct hf_cell *c, int tx, int y, float *part)
+// How much of the light behind the focus a row of tiles tx to `end` shows.
+static void shown(const struct hf_cell *c, int tx, int end, int y, float *part)
 {
-    const int ty = y / TILE, is_near = *hf_layers_map_at(&c->near, tx, ty);
+    const int ty = y / TILE, n = (end - tx) * TILE;
     float *near = c->row[0], *middle = c->row[1];
-    for (int x = 0; x < TILE; x++)
-        near[x] = middle[x] = 0;
-    if (is_near)
-        hf_layers_raise(c, NEAR, c->l->channels, tx * TILE, TILE, y, near);
-    if (*hf_layers_map_at(&c->begun, tx, ty))
-        memcpy(middle, hf_layers_stack_at(c, MIDDLE, tx * TILE, y).weight, sizeof(float) * TILE);
-    hf_layers_add_near_cover(c, tx, tx + 1, y, near);
-    hf_layers_add_near_cover(c, tx, tx + 1, y, middle);
-    for (int x = 0; x < TILE; x++)
+    memset(near, 0, sizeof(float) * (size_t)n);
+    memset(middle, 0, sizeof(float) * (size_t)n);
+    for (int i = tx, to; (to = hf_layers_next_run(&c->near, &i, ty, end, 1)) > i; i = to)
+        hf_layers_raise(c, NEAR, c->l->channels, i * TILE, (to - i) * TILE, y, near + (i - tx) * TILE);
+    for (int i = tx, to; (to = hf_layers_next_run(&c->begun, &i, ty, end, 1)) > i; i = to)
+        memcpy(middle + (i - tx) * TILE, hf_layers_stack_at(c, MIDDLE, i * TILE, y).weight,
+               sizeof(float) * TILE * (size_t)(to - i));
+    hf_layers_add_near_cover(c, tx, end, y, near);
+    hf_layers_add_near_cover(c, tx, end, y, middle);
+    for (int x = 0; x < n; x++)
         part[x] = left_by_middle(hf_saturate(middle[x]), hf_saturate(near[x]));
 }
 
-void hf_layers_light_row(const struct hf_cell *c, int tx, int y, float *const out[6])
+void hf_layers_light_row(const struct hf_cell *c, int tx, int end, int y, float *const out[6])
 {
-    const int channels = c->l->channels,
+    const int channels = c->l->channels, n = (end - tx) * TILE,
               lit[2] = {*hf_layers_map_at(&c->lit[NEAR], tx, y / TILE), *hf_layers_map_at(&c->lit[FAR], tx, y / TILE)};
-    float part[TILE];
+    float *part = c->row[2];
     for (int i = 0; i < 6; i++)
-        memset(out[i], 0, sizeof(float) * TILE);
+        memset(out[i], 0, sizeof(float) * (size_t)n);
     if (lit[FAR])
-        shown(c, tx, y, part);
+        shown(c, tx, end, y, part);
     for (int stack = NEAR; stack <= FAR; stack++)
         for (int i = 0; lit[stack] && i <= channels; i++)
-            c->k->light(stack == FAR ? part : c->whole, hf_layers_light_at(c, stack, i, tx * TILE, y), TILE,
+            c->k->light(stack == FAR ? part : c->whole, hf_layers_light_at(c, stack, i, tx * TILE, y), n,
                         out[i < channels ? i : 4]);
     if (lit[FAR])
-        c->k->light(c->whole, hf_layers_light_at(c, FAR, channels + 1, tx * TILE, y), TILE, out[5]);
+        c->k->light(c->whole, hf_layers_light_at(c, FAR, channels + 1, tx * TILE, y), n, out[5]);
 }

@@ -70,9 +70,10 @@ struct hf_cell {
     struct hf_tile_map covered;           // tiles where the far stack is not fully open at its start
     float *lift;                          // 1 / that openness, the factor for the far stack's sums
     ptrdiff_t lift_row;
-    float *cover;    // the coverage of a slice
-    float *cut_off;  // what is cut from the discs of tiles with lamps
-    float *shape;    // scratch of shapes
+    struct hf_tile_map passed;  // tiles in which rays of lamps pass a slice, see cut.c
+    float *cover;               // the coverage of a slice
+    float *cut_off;             // what is cut from the discs of tiles with lamps
+    float *shape;               // scratch of shapes
 };
 
 // A span of columns of a level.
@@ -225,9 +226,9 @@ void hf_layers_draw_lights(struct hf_cell *c, int stack);
 const float *hf_layers_light_at(const struct hf_cell *c, int stack, int channel, int x, int y);
 // Add what light in front of the focus covers, in a row of some tiles.
 void hf_layers_add_near_cover(const struct hf_cell *c, int tx, int end, int y, float *out);
-// The light of a tile's row as far as it is seen: colours, then at 4 what it covers, and at 5 what that behind the focus would
-// cover if nothing were before it.
-void hf_layers_light_row(const struct hf_cell *c, int tx, int y, float *const out[6]);
+// A row of the light of tiles tx to `end`, which are lit alike, as far as it is seen: colours, then at 4 what it covers, and at 5
+// what that behind the focus would cover if nothing were before it.
+void hf_layers_light_row(const struct hf_cell *c, int tx, int end, int y, float *const out[6]);
 
 // together.c
 void hf_layers_put_slice(struct hf_cell *c, int i);

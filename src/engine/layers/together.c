@@ -367,12 +367,8 @@ static void finish_row(const struct hf_cell *c, int state, int x, int y, int n, 
     // With nothing in the middle stack all far light is seen as it is.
     for (int i = 0; lit && whole && i < 6; i++)
         light[i] = hf_layers_light_at(c, FAR, i < channels ? i : channels + (i == 5), x, y);
-    for (int i = 0; i < n && lit && !whole; i += TILE) {
-        float *to[6];
-        for (int k = 0; k < 6; k++)
-            to[k] = c->light_row[k] + i;
-        hf_layers_light_row(c, (x + i) / TILE, y, to);
-    }
+    if (lit && !whole)
+        hf_layers_light_row(c, x / TILE, (x + n) / TILE, y, c->light_row);
     if (far)
         raise(c, FAR, x, n, y, c->row);
     c->k->finish(&r, far ? (const float *const *)c->row : NULL, lit ? light : NULL, own, channels,

@@ -261,9 +261,10 @@ static void mix_tile(const struct hf_view_block *b, const struct hf_cell *of, in
                      ptrdiff_t stride)
 {
     const struct hf_layers *l = b->c.l;
+    const int at_x = tx + (b->c.x0 - of->x0) / TILE;
     for (int y = 0; y < TILE; y++) {
         float light[6][TILE];
-        hf_layers_light_row(of, tx + (b->c.x0 - of->x0) / TILE, ty * TILE + y + b->c.y0 - of->y0,
+        hf_layers_light_row(of, at_x, at_x + 1, ty * TILE + y + b->c.y0 - of->y0,
                             (float *[]){light[0], light[1], light[2], light[3], light[4], light[5]});
         for (int x = 0; x < TILE; x++) {
             const ptrdiff_t at = pixel_at(b, tx * TILE + x, ty * TILE + y);
