@@ -94,9 +94,14 @@ void views_make(struct world *w)
     w->colours = COLOURS_PLAIN;  // samples are finite, as layers clamps them
     w->n = 16 * rng_int(r, 1, 2);
     for (int i = 0; i < PLANES; i++)
-        for (int y = 0; y < 2; y++)
+        for (int y = 0; y < 2; y++) {
             for (int c = 0; c <= now.channels; c++)
                 fill(w, PLANE_LINES * i + 8 * y + c, -16, w->n + 16, c ? COLOUR : WEIGHT);
+            float *weight = line(w, ARENA_MADE, PLANE_LINES * i + 8 * y);
+            for (int x = -16; x < w->n + 16; x += 16)
+                if (rng_one_in(r, 3))
+                    memset(weight + x, 0, 16 * sizeof *weight);
+        }
     for (int v = 0; v < VIEWS; v++) {
         now.parts[v] = rng_float(r, 0, 2);
         now.point[v][2] = rng_float(r, 0.5f, 1);
@@ -114,8 +119,18 @@ void views_make(struct world *w)
             put(w, IN + i, w->n, 0);
 }
 
+// Bit 0 of what views_call() gives stands for the first 16 pixels.
+static uint32_t held_in(const float *weight, int n)
+{
+    uint32_t held = 0;
+    for (int x = 0; x < n; x++)
+        held |= (uint32_t)(weight[x] > 0) << x / 16;
+    return held;
+}
+
 void views_call(const struct world *w, const struct kernels *k, enum arena a)
 {
+    uint32_t held[PLANES][2];
     struct hf_view_plane plane[PLANES];
     const struct hf_view_eye eye = {.x = line(w, a, EYE),
                                     .y = now.off,
@@ -130,12 +145,17 @@ void views_call(const struct world *w, const struct kernels *k, enum arena a)
                               .n = w->n,
                               .part = now.add ? now.parts : NULL,
                               .eye = now.with ? &eye : NULL};
-    for (int i = 0; i < PLANES; i++)
+    for (int i = 0; i < PLANES; i++) {
+        for (int y = 0; y < 2; y++)
+            held[i][y] = held_in(line(w, a, PLANE_LINES * i + 8 * y) - 16, w->n + 32);
         plane[i] = (struct hf_view_plane){.at = line(w, a, PLANE_LINES * i),
                                           .row = 8 * stride(w),
                                           .channel = stride(w),
                                           .level = i == 1,
+                                          .held = held[i],
+                                          .lead = 16,
                                           .shift = (const int16_t(*)[2])now.shift[i]};
+    }
     for (int i = 0; i < 5; i++) {
         row.near[i] = line(w, a, IN + i);
         row.beyond[i] = line(w, a, IN + 5 + i);

@@ -6,15 +6,21 @@
 #include "engine/layers/parts.h"
 #include "engine/layers/views.h"
 
-enum { HF_LAYERS_BLOCK_ROWS = 12 };  // of tiles, at most
+enum {
+    HF_LAYERS_BLOCK_ROWS = 12,  // of tiles, at most
+    HF_LAYERS_VIEW_RUN = 32     // pixels of a row that are made together
+};
 
 // Planes of a slice, under construction.
 struct hf_slice_plane {
     float *at;
     ptrdiff_t row, channel;
-    int level, around;      // around: tiles on each side of the block
-    int any;                // the slice reaches the block
-    int clear0, clear1;     // the rows that are cleared, and may be read, in its own pixels
+    int level, around;  // around: tiles on each side of the block
+    int any;            // the slice reaches the block
+    // Of each row of tiles, from `around` before the block on: a bit for each tile, likewise, that is cleared and may be read.
+    uint64_t *cleared;
+    uint32_t
+        *held;  // of each row of its own pixels, from `around` tiles before the block on: as in struct hf_view_plane
     struct hf_rect filled;  // the part that holds samples, in its own pixels
     uint64_t *reached;      // of each row of tiles, from one before the block on: a bit for each tile, likewise
 };

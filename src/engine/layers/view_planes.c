@@ -57,6 +57,19 @@ void hf_layers_place_planes(struct hf_view_block *b, struct hf_scratch *m)
     uint64_t *reached = (uint64_t *)(void *)hf_layers_take(m, 2 * slices * rows, 0);
     for (int i = 0; m->memory && i < l->slices; i++)
         b->plane[i] = (struct hf_slice_plane){.reached = reached + i * (b->c.rows + 2)};
+    for (int i = 0; i < l->slices; i++) {
+        struct hf_slice_plane p;
+        if (!is_in(l, i) || hf_layers_view_slice(l, i) != i)
+            continue;
+        shape_plane(b, i, &p);
+        uint64_t *cleared = (uint64_t *)(void *)hf_layers_take(m, 2 * (size_t)(b->c.rows + 2 * p.around), 0);
+        uint32_t *held =
+            (uint32_t *)(void *)hf_layers_take(m, (size_t)((b->c.rows + 2 * p.around) * TILE >> p.level), 0);
+        if (m->memory) {
+            b->plane[i].cleared = cleared;
+            b->plane[i].held = held;
+        }
+    }
     b->memory = hf_layers_take(m, 0, 0);
     for (int i = 0; i < l->slices; i++) {
         struct hf_slice_plane p;
@@ -129,21 +142,47 @@ static void leave_unseen(const struct hf_view_block *b, const uint64_t *seen, in
     }
 }
 
-// Clear the rows of a plane that views of tile rows y0 to y1 may read.
-static void clear_rows(const struct hf_view_block *b, struct hf_slice_plane *p, int y0, int y1)
+// The next run of set bits, from bit *from on, which it moves to the first. Returns how many there are.
+static int next_bits(uint64_t bits, int *from)
 {
-    const int size = TILE >> p->level, from = hf_max(y0 - p->around, -p->around) * size,
-              to = hf_min(y1 + p->around, b->c.rows + p->around) * size;
-    if (p->clear0 == p->clear1)
-        p->clear0 = p->clear1 = from;
-    if (from < p->clear0) {
-        memset(p->at + from * p->row - p->around * b->tile, 0, sizeof(float) * (size_t)((p->clear0 - from) * p->row));
-        p->clear0 = from;
+    if (!(bits >> *from))
+        return 0;
+    *from += __builtin_ctzll(bits >> *from);
+    return __builtin_ctzll(~(bits >> *from));
+}
+
+// Clear tiles of a plane: those of row ty with bits in `tiles`, as in `cleared`; with the last of them what runs of pixels read
+// behind it.
+static void clear_tiles(const struct hf_view_block *b, const struct hf_slice_plane *p, int ty, uint64_t tiles)
+{
+    const int size = TILE >> p->level, columns = b->c.columns + 2 * p->around;
+    for (int from = 0, n; (n = next_bits(tiles, &from)) > 0; from += n) {
+        const int floats = n * b->tile + (from + n == columns ? SPARE : 0);
+        for (int y = ty * size; y < (ty + 1) * size; y++)
+            for (int c = 0; c <= b->c.l->channels; c++)
+                memset(p->at + y * p->row + c * p->channel + (from - p->around) * b->tile, 0,
+                       sizeof(float) * (size_t)floats);
     }
-    if (to > p->clear1) {
-        memset(p->at + p->clear1 * p->row - p->around * b->tile, 0,
-               sizeof(float) * (size_t)((to - p->clear1) * p->row));
-        p->clear1 = to;
+}
+
+// Clear what views of the tiles `seen` may read of a plane: bits as in `blended`. A run of pixels is made as a whole, so what the
+// tiles beside read is cleared as well.
+static void clear_around(const struct hf_view_block *b, struct hf_slice_plane *p, const uint64_t *seen)
+{
+    const struct hf_cell *c = &b->c;
+    const int columns = c->columns + 2 * p->around, more = HF_LAYERS_VIEW_RUN / b->tile;
+    // Fewer than 64: blocks have at most 20 columns, and planes 9 more on either side.
+    const uint64_t all = ((uint64_t)1 << columns) - 1;
+    for (int ty = -p->around; ty < c->rows + p->around; ty++) {
+        uint64_t row = 0, wide = 0;
+        for (int y = hf_max(ty - p->around, -1); y <= hf_min(ty + p->around, c->rows); y++)
+            row |= seen[y + 1];
+        // Bit tx + 1 of a row becomes bit tx + around of the plane, and those up to around + more beside it.
+        for (int i = -1 - more; row && i < 2 * p->around + more; i++)
+            wide |= i < 0 ? row >> -i : row << i;
+        wide &= all & ~p->cleared[ty + p->around];
+        clear_tiles(b, p, ty, wide);
+        p->cleared[ty + p->around] |= wide;
     }
 }
 
@@ -155,7 +194,8 @@ static void begin_planes(const struct hf_view_block *b, int at, size_t *used)
     p->any = 1;
     p->at = b->memory + *used + (p->around * TILE >> p->level) * p->row + p->around * b->tile;
     p->filled = (struct hf_rect){FAR_OFF, FAR_OFF, -FAR_OFF, -FAR_OFF};
-    p->clear0 = p->clear1 = 0;
+    memset(p->cleared, 0, sizeof *p->cleared * (size_t)(b->c.rows + 2 * p->around));
+    memset(p->held, 0, sizeof *p->held * (size_t)((b->c.rows + 2 * p->around) * TILE >> p->level));
     *used += (n + 15) & ~(size_t)15;
 }
 
@@ -165,7 +205,7 @@ static int reach(struct hf_view_block *b, int i, int at, enum hf_kind kind, cons
 {
     struct hf_slice_plane *p = &b->plane[at];
     uint64_t seen[HF_LAYERS_BLOCK_ROWS + 2];
-    int y0 = b->c.rows + 1, y1 = -1;
+    uint64_t any = 0;
     if (!hf_layers_mark_used(&b->c, i, kind) || !hf_layers_mark_touched(&b->c, s, &b->c.touched))
         return 0;
     for (int ty = -1; ty <= b->c.rows; ty++) {
@@ -174,15 +214,14 @@ static int reach(struct hf_view_block *b, int i, int at, enum hf_kind kind, cons
             row |= (uint64_t)(*hf_layers_map_at(&b->c.touched, tx, ty) != 0) << (tx + 1);
         seen[ty + 1] = row & b->blended[ty + 1];
         p->reached[ty + 1] |= seen[ty + 1];
-        y0 = seen[ty + 1] ? hf_min(y0, ty) : y0;
-        y1 = seen[ty + 1] ? ty + 1 : y1;
+        any |= seen[ty + 1];
     }
-    if (y0 >= y1)
+    if (!any)
         return 0;
     leave_unseen(b, seen, hf_layers_blur_tiles(s));
     if (!p->any)
         begin_planes(b, at, used);
-    clear_rows(b, p, y0, y1);
+    clear_around(b, p, seen);
     return 1;
 }
 
@@ -221,18 +260,42 @@ static void gather(struct hf_view_block *b, int i, size_t *used)
 
 // Colours of a slice are means of its samples. Weights are divided by the number of views, so sums of theirs are means
 // and cannot overflow.
+static void divide_row(const struct hf_view_block *b, const struct hf_slice_plane *p, int x, int n, int y)
+{
+    float *w = p->at + y * p->row + x;
+    for (int c = 1; c <= b->c.l->channels; c++) {
+        float *v = w + c * p->channel;
+        for (int i = 0; i < n; i++)
+            v[i] = v[i] / (w[i] > 1e-30f ? w[i] : 1e-30f);
+    }
+    const float one = 1 / (float)b->c.l->set.views;
+    const int lead = p->around * b->tile;
+    uint32_t held = 0;
+    for (int from = 0, to; from < n; from = to) {
+        const int group = (x + from + lead) >> 4;
+        int any = 0;
+        to = hf_min((group + 1) * 16 - lead - x, n);
+        for (int i = from; i < to; i++) {
+            any |= w[i] > 0;
+            w[i] *= one;
+        }
+        held |= (uint32_t)any << group;
+    }
+    p->held[y + (p->around * TILE >> p->level)] |= held;
+}
+
+// The same for all that is cleared and holds samples.
 static void divide(const struct hf_view_block *b, const struct hf_slice_plane *p)
 {
-    const int n = p->filled.x1 - p->filled.x0;
+    const int size = TILE >> p->level;
     for (int y = p->filled.y0; y < p->filled.y1; y++) {
-        float *w = p->at + y * p->row + p->filled.x0;
-        for (int c = 1; c <= b->c.l->channels; c++) {
-            float *v = w + c * p->channel;
-            for (int x = 0; x < n; x++)
-                v[x] = v[x] / (w[x] > 1e-30f ? w[x] : 1e-30f);
+        const uint64_t tiles = p->cleared[(y + p->around * size) / size];
+        for (int from = 0, n; (n = next_bits(tiles, &from)) > 0; from += n) {
+            const int x0 = hf_max((from - p->around) * b->tile, p->filled.x0),
+                      x1 = hf_min((from + n - p->around) * b->tile, p->filled.x1);
+            if (x0 < x1)
+                divide_row(b, p, x0, x1 - x0, y);
         }
-        for (int x = 0; x < n; x++)
-            w[x] *= 1 / (float)b->c.l->set.views;
     }
 }
 
@@ -277,6 +340,8 @@ int hf_layers_list_planes(const struct hf_view_block *b, struct hf_rect tiles, s
                                    .row = p->row,
                                    .channel = p->channel,
                                    .level = p->level - b->unit,
+                                   .held = p->held + (p->around * TILE >> p->level),
+                                   .lead = p->around * b->tile,
                                    .shift = (const int16_t(*)[2])l->shift[l->group_used] + (ptrdiff_t)i * l->set.views};
     }
     return n;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RUN = 32 };  // pixels of a row that are made together
+enum { RUN = HF_LAYERS_VIEW_RUN };
 
 // At a pixel some views may meet no sample and stay open. They take the mean of what other views see behind the focus,
 // if at least this part of all views sees something there; with fewer, part of it is the mean of all that is seen.

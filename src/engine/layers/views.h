@@ -34,6 +34,8 @@ struct hf_view_plane {
     const float *at;
     ptrdiff_t row, channel;  // in floats
     int level;
+    const uint32_t *held;  // of each row: a bit for each 16 pixels, from `lead` before the block on, that have weight
+    int lead;
     const int16_t (*shift)[2];  // of each view: from a pixel to the one that it shows
 };
 
