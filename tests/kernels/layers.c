@@ -347,8 +347,6 @@ void layers_make(struct world *w, int which)
         for (int y = 0; y < now.rows; y++) {
             fill_surfaces(w, y, 0, w->n);
             fill(w, 8 + y, 0, w->n, WEIGHT);
-            for (int x = 0; x < w->n; x++)
-                line(w, ARENA_MADE, 16 + y)[x] = rng_one_in(&w->rng, 300) ? 0.5f : 0;
         }
         line(w, ARENA_MADE, IN)[0] = now.add ? HUGE_VALF : -1;
         line(w, ARENA_MADE, IN)[1] = now.add ? -HUGE_VALF : 1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Computation with several kernels for a field, on vectors: what the kernels are laid over.
+#include "base/bits.h"
 #include "engine/gather/computation_simd.h"
 
 HF_INLINE vf area_reached(const struct hf_levels *l, int i, vf coc)
@@ -237,18 +238,10 @@ HF_INLINE uint32_t area_groups_in(const struct area_rows *rows, int x0, int x1)
     return ~(uint32_t)0 >> (AREA_GROUPS - 1 - last) & ~(uint32_t)0 << first;
 }
 
-// The next run of bits, which are then left out: the first, and one more than the last. A carry runs through it.
-HF_INLINE struct area_columns area_bits_next(uint64_t *bits)
-{
-    const uint64_t begins = *bits & -*bits, ends = (*bits + begins) & ~*bits;
-    *bits &= ends ? -ends : 0;
-    return (struct area_columns){__builtin_ctzll(begins), ends ? __builtin_ctzll(ends) : 64};
-}
-
 // The columns of the next run of groups, which are then left out; from the first group's on.
 HF_INLINE struct area_columns area_groups_next(const struct area_rows *rows, uint64_t *groups)
 {
-    const struct area_columns run = area_bits_next(groups);
+    const struct hf_bit_run run = hf_next_bits(groups);
     return (struct area_columns){rows->wide * run.x0, hf_min(rows->wide * run.x1, rows->n)};
 }
 

@@ -31,7 +31,7 @@ static void tents_find(uint64_t blocks, int x, int n, struct tents_runs *runs)
     }
     uint64_t left = (blocks >> at | blocks << (-at & 63)) & (~(uint64_t)0 >> (64 - most));
     while (left) {
-        const struct area_columns run = area_bits_next(&left);
+        const struct hf_bit_run run = hf_next_bits(&left);
         runs->run[runs->count++] =
             (struct area_columns){hf_max(16 * (first + run.x0) - x, 0), hf_min(16 * (first + run.x1) - x, n)};
     }

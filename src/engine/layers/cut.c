@@ -339,23 +339,19 @@ static size_t floats_of(const struct lamp *p)
 }
 
 // Where along an axis rays from tiles `from` up to `to` to a lamp pass a slice: this part of their way from the pixel, and at most
-// so far from it. Sets the first tile and the one behind the last, of those from `low` up to `high`.
-static void passed_along(float lamp, int from, int to, float part, float most, int level, int low, int high, int *t0,
-                         int *t1)
+// so far from it.
+static struct hf_layers_range passed_along(float lamp, int from, int to, float part, float most)
 {
     // The place changes evenly with the pixel, but for two bends. A pixel of half resolution more is cut on either side.
     const float bend = most / fabsf(part), first = (float)(from * TILE - 2), end = (float)(to * TILE + 2),
                 pixel[4] = {first, end, hf_edges_between(lamp - bend, first, end),
                             hf_edges_between(lamp + bend, first, end)};
-    const float more = (float)(2 << level);  // two samples
-    float least = HUGE_VALF, last = -HUGE_VALF;
+    struct hf_layers_range r = {HUGE_VALF, -HUGE_VALF};
     for (int i = 0; i < 4; i++) {
         const float at = pixel[i] + hf_edges_between(part * (lamp - pixel[i]), -most, most);
-        least = at < least ? at : least;
-        last = hf_larger(at, last);
+        r = (struct hf_layers_range){at < r.low ? at : r.low, hf_larger(at, r.high)};
     }
-    *t0 = hf_layers_within(tile_of(least - more), low, high - 1);
-    *t1 = hf_layers_within(tile_of(last + more), *t0, high - 1) + 1;
+    return r;
 }
 
 // The tiles in which rays of a lamp's disc in the cell pass a slice before it. Tiles beyond the frame repeat each other, so the
@@ -364,14 +360,17 @@ static struct hf_rect passed_by(const struct hf_cell *c, const struct hf_slice *
 {
     const struct hf_rect most = hf_layers_tiles_with_samples(c), cut = p->cut.tiles;
     const int n = hf_layers_tiles_around(s);
-    const float x = p->x + (float)(p->of.tx * TILE), y = p->y + (float)(p->of.ty * TILE), part = s->radius / p->radius,
-                radius = fabsf(s->radius);
-    struct hf_rect r;
-    passed_along(x, cut.x0, cut.x1, part, radius * c->l->wide, s->level, hf_max(-n, most.x0),
-                 hf_min(c->columns + n, most.x1 + 1), &r.x0, &r.x1);
-    passed_along(y, cut.y0, cut.y1, part, radius, s->level, hf_max(-n, most.y0), hf_min(c->rows + n, most.y1 + 1),
-                 &r.y0, &r.y1);
-    return r;
+    // Its x1 and y1 are the last tile's.
+    const struct hf_rect all = {hf_max(-n, most.x0), hf_max(-n, most.y0), hf_min(c->columns + n, most.x1 + 1) - 1,
+                                hf_min(c->rows + n, most.y1 + 1) - 1};
+    const float part = s->radius / p->radius, radius = fabsf(s->radius), more = (float)(2 << s->level);  // two samples
+    const struct hf_layers_range x = passed_along(p->x + (float)(p->of.tx * TILE), cut.x0, cut.x1, part,
+                                                  radius * c->l->wide),
+                                 y = passed_along(p->y + (float)(p->of.ty * TILE), cut.y0, cut.y1, part, radius);
+    return (struct hf_rect){hf_layers_within(tile_of(x.low - more), all.x0, all.x1),
+                            hf_layers_within(tile_of(y.low - more), all.y0, all.y1),
+                            hf_layers_within(tile_of(x.high + more), all.x0, all.x1) + 1,
+                            hf_layers_within(tile_of(y.high + more), all.y0, all.y1) + 1};
 }
 
 // Mark the tiles in which rays of lamps behind a slice pass it. Returns the least rectangle around them.
@@ -387,7 +386,7 @@ static struct hf_rect mark_passed(struct hf_cell *c, const struct hf_slice *s, s
         }
     }
     for (int ty = r.y0; ty < r.y1; ty++)
-        memset(hf_layers_map_at(&c->passed, r.x0, ty), 0, (size_t)hf_max(r.x1 - r.x0, 0));
+        memset(hf_layers_map_at(&c->passed, r.x0, ty), 0, (size_t)(r.x1 - r.x0));
     for (int i = 0; i < count; i++)
         for (int ty = lamp[i].passed.y0; ty < lamp[i].passed.y1; ty++)
             memset(hf_layers_map_at(&c->passed, lamp[i].passed.x0, ty), WANTED,

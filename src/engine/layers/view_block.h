@@ -19,8 +19,8 @@ struct hf_slice_plane {
     int any;            // the slice reaches the block
     // Of each row of tiles, from `around` before the block on: a bit for each tile, likewise, that is cleared and may be read.
     uint64_t *cleared;
-    uint32_t
-        *held;  // of each row of its own pixels, from `around` tiles before the block on: as in struct hf_view_plane
+    // Of each row of its own pixels, from `around` tiles before the block on: as in struct hf_view_plane.
+    uint32_t *held;
     struct hf_rect filled;  // the part that holds samples, in its own pixels
     uint64_t *reached;      // of each row of tiles, from one before the block on: a bit for each tile, likewise
 };

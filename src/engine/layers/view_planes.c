@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/bits.h"
 #include "engine/layers/slices.h"
 #include "engine/layers/view_block.h"
 
@@ -46,6 +47,12 @@ static int is_in(const struct hf_layers *l, int slice)
            (!l->set.near_only || (l->slice[slice].level > 0 && l->slice[slice].radius < 0));
 }
 
+// Whether a slice has planes of its own.
+static int has_planes(const struct hf_layers *l, int slice)
+{
+    return is_in(l, slice) && hf_layers_view_slice(l, slice) == slice;
+}
+
 void hf_layers_place_planes(struct hf_view_block *b, struct hf_scratch *m)
 {
     const struct hf_layers *l = b->c.l;
@@ -59,7 +66,7 @@ void hf_layers_place_planes(struct hf_view_block *b, struct hf_scratch *m)
         b->plane[i] = (struct hf_slice_plane){.reached = reached + i * (b->c.rows + 2)};
     for (int i = 0; i < l->slices; i++) {
         struct hf_slice_plane p;
-        if (!is_in(l, i) || hf_layers_view_slice(l, i) != i)
+        if (!has_planes(l, i))
             continue;
         shape_plane(b, i, &p);
         uint64_t *cleared = (uint64_t *)(void *)hf_layers_take(m, 2 * (size_t)(b->c.rows + 2 * p.around), 0);
@@ -73,7 +80,7 @@ void hf_layers_place_planes(struct hf_view_block *b, struct hf_scratch *m)
     b->memory = hf_layers_take(m, 0, 0);
     for (int i = 0; i < l->slices; i++) {
         struct hf_slice_plane p;
-        m->used += is_in(l, i) && hf_layers_view_slice(l, i) == i ? (shape_plane(b, i, &p) + 15) & ~(size_t)15 : 0;
+        m->used += has_planes(l, i) ? (shape_plane(b, i, &p) + 15) & ~(size_t)15 : 0;
     }
 }
 
@@ -142,25 +149,17 @@ static void leave_unseen(const struct hf_view_block *b, const uint64_t *seen, in
     }
 }
 
-// The next run of set bits, from bit *from on, which it moves to the first. Returns how many there are.
-static int next_bits(uint64_t bits, int *from)
-{
-    if (!(bits >> *from))
-        return 0;
-    *from += __builtin_ctzll(bits >> *from);
-    return __builtin_ctzll(~(bits >> *from));
-}
-
 // Clear tiles of a plane: those of row ty with bits in `tiles`, as in `cleared`; with the last of them what runs of pixels read
 // behind it.
 static void clear_tiles(const struct hf_view_block *b, const struct hf_slice_plane *p, int ty, uint64_t tiles)
 {
     const int size = TILE >> p->level, columns = b->c.columns + 2 * p->around;
-    for (int from = 0, n; (n = next_bits(tiles, &from)) > 0; from += n) {
-        const int floats = n * b->tile + (from + n == columns ? SPARE : 0);
+    while (tiles) {
+        const struct hf_bit_run run = hf_next_bits(&tiles);
+        const int floats = (run.x1 - run.x0) * b->tile + (run.x1 == columns ? SPARE : 0);
         for (int y = ty * size; y < (ty + 1) * size; y++)
             for (int c = 0; c <= b->c.l->channels; c++)
-                memset(p->at + y * p->row + c * p->channel + (from - p->around) * b->tile, 0,
+                memset(p->at + y * p->row + c * p->channel + (run.x0 - p->around) * b->tile, 0,
                        sizeof(float) * (size_t)floats);
     }
 }
@@ -289,10 +288,11 @@ static void divide(const struct hf_view_block *b, const struct hf_slice_plane *p
 {
     const int size = TILE >> p->level;
     for (int y = p->filled.y0; y < p->filled.y1; y++) {
-        const uint64_t tiles = p->cleared[(y + p->around * size) / size];
-        for (int from = 0, n; (n = next_bits(tiles, &from)) > 0; from += n) {
-            const int x0 = hf_max((from - p->around) * b->tile, p->filled.x0),
-                      x1 = hf_min((from + n - p->around) * b->tile, p->filled.x1);
+        uint64_t tiles = p->cleared[(y + p->around * size) / size];
+        while (tiles) {
+            const struct hf_bit_run run = hf_next_bits(&tiles);
+            const int x0 = hf_max((run.x0 - p->around) * b->tile, p->filled.x0),
+                      x1 = hf_min((run.x1 - p->around) * b->tile, p->filled.x1);
             if (x0 < x1)
                 divide_row(b, p, x0, x1 - x0, y);
         }
