@@ -6,7 +6,7 @@
 // The sizes that were fastest on two cores. Large tiles compute few pixels twice at their rims and read memory in long
 // runs; smaller ones stay in the cache and skip more. With more threads, tiles are halved until each thread has a few.
 // Chunks are wide, also for long runs, and low enough for their CoC to stay in the cache: 256 KB at 1024 x 8.
-enum { TILE_WIDTH = 320, TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4 };
+enum { TILE_HEIGHT = 96, MIN_WIDTH = 64, MIN_HEIGHT = 24, TILES_A_THREAD = 4 };
 // The cells that an engine wants are cut if there are fewer than this for each thread. Strips are cells of whole rows.
 enum { CELLS_A_THREAD = 3, MIN_STRIP = 16 };
 enum { CHUNK_WIDTH = 1024, CHUNK_HEIGHT = 8 };
@@ -83,7 +83,7 @@ static void find_reaches(struct hf_plan *p, const struct hf_setup *s)
 // vectors, and the last one of a cell must not reach into the next cell.
 static void choose_tile(const struct hf_plan *p, int threads, int *width, int *height)
 {
-    *width = TILE_WIDTH;
+    *width = HF_CELL_WIDTH;
     *height = TILE_HEIGHT;
     while (ceil_div(p->width, *width) * ceil_div(p->height, *height) < TILES_A_THREAD * threads) {
         if (*width > 2 * *height && *width / 2 >= MIN_WIDTH)

@@ -5,7 +5,8 @@
 
 #include "pass/engine.h"
 
-enum { HF_MAX_SWEEPS = 6 };
+// Cells are so wide unless many threads need smaller ones, or an engine asks for another width.
+enum { HF_MAX_SWEEPS = 6, HF_CELL_WIDTH = 320 };
 
 // Cells of sweep i have width[i] x height[i] half-resolution pixels. [0] is not used.
 struct hf_cells {

@@ -115,7 +115,7 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     (void)s;
     (void)sweep;
-    *width = *width == 320 ? 480 : *width;
+    *width = *width == HF_CELL_WIDTH ? 480 : *width;
     *height = hf_min(*height, 72);
 }
 
