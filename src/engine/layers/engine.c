@@ -336,10 +336,12 @@ static struct hf_reach halo(const struct hf_setup *s, int halo)
     // All planes of a set of samples have one stride, so every reader must read equally far around. A cell's tiles
     // beyond the frame all equal those next to the frame.
     const int border = hf_min(l->around, HF_LAYERS_BORDER) / 2;
-    const int n = halo == HALO_EDGE     ? (l->set.highlights ? HF_LAYERS_BRIGHT_REACH : 6)
-                  : halo == HALO_LEVELS ? hf_layers_hidden_reach(l)
-                  : halo == HALO_KNOWN  ? (l->known ? hf_max(border, hf_layers_hidden_reach(l)) : 0)
-                                        : hf_max(border, hf_layers_patterns_reach(l));
+    if (halo == HALO_EDGE)
+        return l->set.highlights ? (struct hf_reach){HF_LAYERS_BRIGHT_COLUMNS, HF_LAYERS_BRIGHT_REACH}
+                                 : (struct hf_reach){6, 6};
+    const int n = halo == HALO_LEVELS  ? hf_layers_hidden_reach(l)
+                  : halo == HALO_KNOWN ? (l->known ? hf_max(border, hf_layers_hidden_reach(l)) : 0)
+                                       : hf_max(border, hf_layers_patterns_reach(l));
     return (struct hf_reach){n, n};
 }
 
@@ -377,10 +379,10 @@ static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
     const int whole = (s->half_width + 15) & ~15, rows = HF_LAYERS_TILE / 2,
               most = (s->half_height + rows - 1) / rows * rows;
     // Each tile weighs the samples around it again. With a larger border a larger tile is cheaper.
-    const int n = hf_layers(s)->around < 13 * HF_LAYERS_TILE ? 1 : 2, few = *width == HF_CELL_WIDTH;
+    const int n = hf_layers(s)->around < 13 * HF_LAYERS_TILE ? 1 : 2, wide = *width == HF_CELL_WIDTH;
     if (sweep == 2) {
-        *width = hf_min(few ? 960 : 160 * n, whole);
-        *height = hf_min(few ? 96 : 96 * n, most);
+        *width = hf_min(wide ? 960 : 160 * n, whole);
+        *height = hf_min(wide ? 96 : 96 * n, most);
     } else if (sweep == 5) {
         *height = *width > 160 * n ? hf_min(96 * n, most) : *height;
         *width = hf_min(*width, 160 * n);

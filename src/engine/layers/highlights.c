@@ -16,10 +16,10 @@
 
 #include "pixel/pass_c.h"
 
-// In half-resolution pixels: a mean's reach on either side of its middle, the distance of two means, the padding of a
-// row.
-enum { MEAN = 4, APART = 2 * MEAN + 1, REACH = HF_LAYERS_BRIGHT_REACH, PAD = 32 };
-_Static_assert(MEAN + APART <= REACH && REACH + 16 <= PAD, "what means read and vectors write");
+// In half-resolution pixels: a mean's reach on either side of its middle, the distance of two means, the rows and columns that
+// are made around a cell, the padding of a row. Columns are made from a cache line's beginning on.
+enum { MEAN = 4, APART = 2 * MEAN + 1, REACH = HF_LAYERS_BRIGHT_REACH, WIDE = HF_LAYERS_BRIGHT_COLUMNS, PAD = 32 };
+_Static_assert(MEAN + APART <= REACH && REACH <= WIDE && WIDE + 16 <= PAD, "what means read and vectors write");
 
 static float root(float v)
 {
@@ -139,11 +139,17 @@ void hf_layers_lamps_c(const float *const in[6], const struct hf_lamp_tap tap[HF
     }
 }
 
+// The floats of a row of means.
+static ptrdiff_t stride_of(int width)
+{
+    return ((width + 15) & ~15) + 2 * PAD;
+}
+
 // Rows of the scratch: means of colour and means of alpha, each with APART rows above and below; one row of means
 // along columns; two rows of zeros; roots, with REACH rows above and below.
 size_t hf_layers_highlight_floats(int width, int height)
 {
-    return ((size_t)width + 2 * PAD) * (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);
+    return (size_t)stride_of(width) * (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);
 }
 
 // Where the roots of a cell's first quad are, behind the means.
@@ -157,7 +163,7 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
 {
     const struct hf_layers_kernels *k = hf_layers_kernels(f);
     const int width = r.x1 - r.x0, height = r.y1 - r.y0;
-    const ptrdiff_t stride = width + 2 * PAD;
+    const ptrdiff_t stride = stride_of(width);
     float *down = scratch + PAD, *none = scratch + stride, *roots = scratch + roots_from(stride);
     const float *in[9];
     memset(none, 0, sizeof(float) * 2 * (size_t)stride);
@@ -166,39 +172,35 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
         for (int i = 0; i < 6; i++)
             row[i / 3][i % 3] = channel[i % 3] < 0 ? none
                                                    : hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], channel[i % 3],
-                                                           2 * (r.x0 - REACH), 2 * (r.y0 + y) + i / 3);
-        k->roots(row[0], row[1], width + 2 * REACH, roots + y * stride - REACH);
+                                                           2 * (r.x0 - WIDE), 2 * (r.y0 + y) + i / 3);
+        k->roots(row[0], row[1], width + 2 * WIDE, roots + y * stride - WIDE);
     }
     for (int y = -APART; y < height + APART && !hf_stopped(f->s->stop); y++) {
         for (int i = 0; i < 9; i++)
-            in[i] = roots + (y + i - MEAN) * stride - REACH;
-        k->nine(in, width + 2 * REACH, down - REACH);
+            in[i] = roots + (y + i - MEAN) * stride - WIDE;
+        k->nine(in, width + 2 * WIDE, down - WIDE);
+        // The outermost means, which nobody reads, are partly of what lies beside.
         for (int i = 0; i < 9; i++)
-            in[i] = down + i - MEAN - APART;
-        k->nine(in, width + 2 * APART, mean + y * stride - APART);
+            in[i] = down + i - MEAN - WIDE;
+        k->nine(in, width + 2 * WIDE, mean + y * stride - WIDE);
     }
 }
 
 // Scratch holds means of colours, then means of alphas. mean and cover point to the cell's first pixel in each.
-static ptrdiff_t stride_of(struct hf_rect cell)
-{
-    return cell.x1 - cell.x0 + 2 * PAD;
-}
-
 static ptrdiff_t cover_from(struct hf_rect cell)
 {
-    return (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell);
+    return (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell.x1 - cell.x0);
 }
 
 // What follows the means. It keeps the roots of colours, which are made last.
 static ptrdiff_t rest_from(struct hf_rect cell)
 {
-    return cover_from(cell) + (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell);
+    return cover_from(cell) + (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell.x1 - cell.x0);
 }
 
 void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch)
 {
-    float *mean = scratch + APART * stride_of(cell) + PAD, *cover = mean + cover_from(cell);
+    float *mean = scratch + APART * stride_of(cell.x1 - cell.x0) + PAD, *cover = mean + cover_from(cell);
     scratch += rest_from(cell);
     if (hf_layers(f->s)->channels == 4)
         make_means(f, cell, (const int[]){3, -1, -1}, scratch, cover);
@@ -208,7 +210,7 @@ void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, fl
 void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch)
 {
     static const int8_t away[HF_LAYERS_LAMP_TAPS / 4] = {1, 5, 8};  // quads
-    const float *roots = scratch + rest_from(cell) + roots_from(stride_of(cell));
+    const float *roots = scratch + rest_from(cell) + roots_from(stride_of(cell.x1 - cell.x0));
     const int alpha = hf_layers(f->s)->channels == 4;
     for (int y = rows.y0; y < rows.y1 && !hf_stopped(f->s->stop); y++) {
         struct hf_lamp_tap tap[HF_LAYERS_LAMP_TAPS];
@@ -216,7 +218,7 @@ void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct
         for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
             const int d = i % 2 ? away[i / 4] : -away[i / 4], dx = i & 2 ? 0 : d, dy = i & 2 ? d : 0;
             const int u = cell.x0 + dx, v = y + dy;
-            tap[i].root = roots + (v - cell.y0) * stride_of(cell) + dx;
+            tap[i].root = roots + (v - cell.y0) * stride_of(cell.x1 - cell.x0) + dx;
             for (int k = 0; k < 2; k++) {
                 tap[i].radius[k] = hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, 2 * u, 2 * v + k);
                 tap[i].alpha[k] = alpha ? hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], 3, 2 * u, 2 * v + k) : NULL;
@@ -247,7 +249,8 @@ void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct 
                           const struct hf_layers_any *any)
 {
     const int x0 = 2 * cell.x0, n = hf_min(2 * cell.x1, f->s->width) - x0, channels = hf_layers(f->s)->channels;
-    const ptrdiff_t stride = stride_of(cell), apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
+    const ptrdiff_t stride = stride_of(cell.x1 - cell.x0),
+                    apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
     const float *mean = scratch + APART * stride + PAD, *cover = mean + cover_from(cell);
     for (int py = 2 * rows.y0; py < hf_min(2 * rows.y1, f->s->height) && !hf_stopped(f->s->stop); py++) {
         const float *around[5], *covered[5];

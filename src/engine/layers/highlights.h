@@ -4,7 +4,8 @@
 
 #include "engine/layers/kernels.h"
 
-enum { HF_LAYERS_BRIGHT_REACH = 13 };  // half-resolution pixels around a sample that are read
+// Half-resolution pixels around a sample that are read; columns that are loaded around a cell: the same in whole cache lines.
+enum { HF_LAYERS_BRIGHT_REACH = 13, HF_LAYERS_BRIGHT_COLUMNS = 16 };
 
 // Square roots of brightness must exceed the mean beside a sample this much more than the mean around it. So edges of
 // patterns up to eighteen times as bright as what is next to them have no highlights.

@@ -22,10 +22,23 @@ static size_t block_count(const struct hf_layers *l, int width, int height)
     return (size_t)(blocks_of(width) + around) * (size_t)(blocks_of(height) + around);
 }
 
+// Floats for what a band notes of its blocks, in whole cache lines.
+static size_t block_floats(const struct hf_layers *l, int width, int height)
+{
+    return (5 * block_count(l, width, height) + 15) & ~(size_t)15;
+}
+
+// Where a band begins in a plane of a row. It is a whole number of cache lines, because blocks are merged from there on: one that
+// lies across two lines takes half as long again.
+static int lead_floats(const struct hf_layers *l)
+{
+    return (hf_layers_hidden_reach(l) + 15) / 16 * 16 + HF_HIDDEN_PAD;
+}
+
 // A plane of a row, with what the search reads beside the band.
 static int plane_floats(const struct hf_layers *l, int width)
 {
-    return (width + 2 * hf_layers_hidden_reach(l) + 15) / 16 * 16 + 2 * HF_HIDDEN_PAD;
+    return (width + 15) / 16 * 16 + 2 * lead_floats(l);
 }
 
 size_t hf_hidden_row_floats(const struct hf_layers *l, int width)
@@ -40,7 +53,7 @@ struct hf_hidden_ring hf_hidden_ring(const struct hf_hidden_band *b, int turn, f
     struct hf_layers_set *s = &ring.set;
     float **const at[6] = {&s->colour[0], &s->colour[1], &s->colour[2], &s->weight, &s->radius, &s->colour[3]};
     for (int i = 0; i < b->l->channels + 2; i++)
-        *at[i] = *memory + i * plane + b->reach + HF_HIDDEN_PAD - b->r.x0;
+        *at[i] = *memory + i * plane + lead_floats(b->l) - b->r.x0;
     s->stride = plane * (b->l->channels + 2);
     *memory += (size_t)turn * (size_t)s->stride;
     return ring;
@@ -63,7 +76,7 @@ size_t hf_hidden_band_floats(const struct hf_layers *l, int width, int height)
     size_t rows = 0;
     for (int j = 1; j < l->levels; j++)
         rows += (size_t)(level_rows(l) + merged_rows(j));
-    return rows * hf_hidden_row_floats(l, width) + 5 * block_count(l, width, height);
+    return rows * hf_hidden_row_floats(l, width) + block_floats(l, width, height);
 }
 
 static void place_blocks(struct hf_hidden_band *b, float **memory)
@@ -82,7 +95,7 @@ static void place_blocks(struct hf_hidden_band *b, float **memory)
     b->wide = b->needed + count;
     for (int j = 0; j < HF_LAYERS_LEVELS; j++)
         b->made[j] = b->wide + (size_t)(j + 1) * count;
-    *memory += 5 * count;
+    *memory += block_floats(b->l, width, height);
 }
 
 struct hf_layers_range hf_hidden_range(const struct hf_hidden_band *b, const float *radius, const float *weight,
@@ -194,7 +207,9 @@ static void merge_row(const struct hf_hidden_band *b, const struct merge *m, con
 {
     const int channels = b->l->channels;
     for (int start = -b->around, end; start < b->columns + b->around; start = end) {
-        for (end = start + 1; end < b->columns + b->around && !marks[end] == !marks[start];)
+        // A block that is made in part is merged by itself, so that vectors of the others lie in one cache line each.
+        const int whole = b->r.x0 + start * HF_HIDDEN_BLOCK >= m->x0;
+        for (end = start + 1; whole && end < b->columns + b->around && !marks[end] == !marks[start];)
             end++;
         const int x = hf_max(b->r.x0 + start * HF_HIDDEN_BLOCK, m->x0),
                   n = hf_min(b->r.x0 + end * HF_HIDDEN_BLOCK, m->x1) - x;

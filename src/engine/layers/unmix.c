@@ -324,7 +324,7 @@ static size_t done_floats(ptrdiff_t stride)
 size_t hf_layers_unmix_floats(int width)
 {
     const size_t stride = (size_t)stride_of(width);
-    return 8 * (DONE * stride + done_floats((ptrdiff_t)stride)) + HF_PAD;
+    return (8 * (DONE * stride + done_floats((ptrdiff_t)stride)) + HF_PAD + 15) & ~(size_t)15;
 }
 
 // The place of row y in a ring.
