@@ -109,14 +109,13 @@ static size_t work(const struct hf_setup *s, const struct hf_cells *p)
     return sums > near ? sums : near;
 }
 
-// Tiles lower than the default: more of a mixed picture is skipped, and its scratch is smaller. And wider: fewer columns are
-// made twice, and most sums take no room.
+// Tiles wider than the default, since what lies around them is made twice, and most sums take no room. They are lower, so that more
+// of a mixed picture is skipped and scratch stays small; but not where the largest kernel reaches far around them.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
-    (void)s;
     (void)sweep;
-    *width = *width == HF_CELL_WIDTH ? 480 : *width;
-    *height = hf_min(*height, 72);
+    *width = *width == HF_CELL_WIDTH ? 640 : *width;
+    *height = taps_reach(s).y < 10 ? hf_min(*height, 72) : *height;
 }
 
 static int check(struct hf_settings *r, const struct hf_params *asked, const struct hf_depth *depth,
