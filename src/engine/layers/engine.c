@@ -139,7 +139,7 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->held = !set->hidden ? 0 : set->patterns ? set->held : fminf(set->held, qualities[HF_LAYERS_STANDARD].held);
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;
-    l->slices = l->levels = 0;
+    l->slices = l->levels = l->mostly_blurred = 0;
     l->given = NULL;
     l->guessed = given->guessed;
     s->sharp_radius = 0;
@@ -239,6 +239,7 @@ static int measure(void *own, struct hf_setup *s, const struct hf_counts *found,
     struct hf_layers *l = own;
     const float low = l->given ? fminf(l->given->radius_min, found->radius_min) : found->radius_min;
     const float high = l->given ? fmaxf(l->given->radius_max, found->radius_max) : found->radius_max;
+    l->mostly_blurred = found->sharp_pixels <= (found->near_pixels + found->far_pixels) / 2;
     l->nearest = fminf(low, 0);
     l->farthest = fmaxf(high, 0);
     const int err = l->shaped ? hf_layers_make_shapes(l, s->resolved->params.aperture.picture, mem) : HF_OK;
@@ -372,14 +373,16 @@ static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p
     return (struct hf_reach){l->around / 2, l->around / 2};
 }
 
-// Cells of Load and Un-mixing are as wide as the frame, because these read 13 quads around a cell again, and long rows cost their
-// kernels less: un-mixing takes 0.75 of its time with tiles. Tiles are for the composite, and where many threads need cells.
+// Where most of a frame is blurred, cells of Load and Un-mixing are as wide as the frame, because these read 13 quads around a cell
+// again, and long rows cost their kernels less: un-mixing takes 0.75 of its time with tiles. Elsewhere, and where many threads need
+// cells, they are the composite's tiles, of which sharp ones are skipped.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     const int whole = (s->half_width + 15) & ~15, rows = HF_LAYERS_TILE / 2,
               most = (s->half_height + rows - 1) / rows * rows;
+    const struct hf_layers *l = hf_layers(s);
     // Each tile weighs the samples around it again. With a larger border a larger tile is cheaper.
-    const int n = hf_layers(s)->around < 13 * HF_LAYERS_TILE ? 1 : 2, wide = *width == HF_CELL_WIDTH;
+    const int n = l->around < 13 * HF_LAYERS_TILE ? 1 : 2, wide = l->mostly_blurred && *width == HF_CELL_WIDTH;
     if (sweep == 2) {
         *width = hf_min(wide ? 960 : 160 * n, whole);
         *height = hf_min(wide ? 96 : 96 * n, most);

@@ -107,6 +107,7 @@ struct hf_layers {
     int most_windows, most_rows;   // of a shape
     float chromatic;               // relative difference of the radii of red and blue
     float nearest, farthest;       // radii in the frame, 0 included
+    int mostly_blurred;            // at most a third of its pixels are sharp
     int edges;                     // pixels may be mixed
     int most_tiles;                // from which a slice's blur reaches a cell, on each side
     int around;                    // a cell reads samples up to this many pixels away
