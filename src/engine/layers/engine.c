@@ -139,7 +139,8 @@ static void resolve(void *own, struct hf_setup *s, const struct hf_depth *depth,
     set->held = !set->hidden ? 0 : set->patterns ? set->held : fminf(set->held, qualities[HF_LAYERS_STANDARD].held);
     l->wide = 1 / (p->view.pixel_aspect * p->aperture.squeeze);
     l->chromatic = p->aperture.chromatic;
-    l->slices = l->levels = l->mostly_blurred = 0;
+    l->slices = l->levels = 0;
+    l->mostly_blurred = 1;  // until it is known: so cells take most memory
     l->given = NULL;
     l->guessed = given->guessed;
     s->sharp_radius = 0;
