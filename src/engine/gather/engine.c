@@ -109,8 +109,8 @@ static size_t work(const struct hf_setup *s, const struct hf_cells *p)
     return sums > near ? sums : near;
 }
 
-// Tiles wider than the default, since what lies around them is made twice, and most sums take no room. They are lower, so that more
-// of a mixed picture is skipped and scratch stays small; but not where the largest kernel reaches far around them.
+// Tiles are wider than the default, because what lies around one is made again for it. They are also lower, so that more of a mixed
+// picture is skipped and scratch stays small; but not where the largest kernel reaches so far that this would cost more.
 static void cell(const struct hf_setup *s, int sweep, int *width, int *height)
 {
     (void)sweep;

@@ -139,17 +139,18 @@ void hf_layers_lamps_c(const float *const in[6], const struct hf_lamp_tap tap[HF
     }
 }
 
-// The floats of a row of means.
-static ptrdiff_t stride_of(int width)
+// The floats of a row of a cell's means.
+static ptrdiff_t stride_of(struct hf_rect cell)
 {
-    return ((width + 15) & ~15) + 2 * PAD;
+    return ((cell.x1 - cell.x0 + 15) & ~15) + 2 * PAD;
 }
 
 // Rows of the scratch: means of colour and means of alpha, each with APART rows above and below; one row of means
 // along columns; two rows of zeros; roots, with REACH rows above and below.
 size_t hf_layers_highlight_floats(int width, int height)
 {
-    return (size_t)stride_of(width) * (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);
+    return (size_t)stride_of((struct hf_rect){0, 0, width, height}) *
+           (2 * ((size_t)height + 2 * APART) + (size_t)height + 2 * REACH + 3);
 }
 
 // Where the roots of a cell's first quad are, behind the means.
@@ -163,7 +164,7 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
 {
     const struct hf_layers_kernels *k = hf_layers_kernels(f);
     const int width = r.x1 - r.x0, height = r.y1 - r.y0;
-    const ptrdiff_t stride = stride_of(width);
+    const ptrdiff_t stride = stride_of(r);
     float *down = scratch + PAD, *none = scratch + stride, *roots = scratch + roots_from(stride);
     const float *in[9];
     memset(none, 0, sizeof(float) * 2 * (size_t)stride);
@@ -189,18 +190,18 @@ static void make_means(const struct hf_frame *f, struct hf_rect r, const int cha
 // Scratch holds means of colours, then means of alphas. mean and cover point to the cell's first pixel in each.
 static ptrdiff_t cover_from(struct hf_rect cell)
 {
-    return (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell.x1 - cell.x0);
+    return (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell);
 }
 
 // What follows the means. It keeps the roots of colours, which are made last.
 static ptrdiff_t rest_from(struct hf_rect cell)
 {
-    return cover_from(cell) + (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell.x1 - cell.x0);
+    return cover_from(cell) + (cell.y1 - cell.y0 + 2 * APART) * stride_of(cell);
 }
 
 void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, float *scratch)
 {
-    float *mean = scratch + APART * stride_of(cell.x1 - cell.x0) + PAD, *cover = mean + cover_from(cell);
+    float *mean = scratch + APART * stride_of(cell) + PAD, *cover = mean + cover_from(cell);
     scratch += rest_from(cell);
     if (hf_layers(f->s)->channels == 4)
         make_means(f, cell, (const int[]){3, -1, -1}, scratch, cover);
@@ -210,7 +211,7 @@ void hf_layers_highlight_means(const struct hf_frame *f, struct hf_rect cell, fl
 void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct hf_rect rows, const float *scratch)
 {
     static const int8_t away[HF_LAYERS_LAMP_TAPS / 4] = {1, 5, 8};  // quads
-    const float *roots = scratch + rest_from(cell) + roots_from(stride_of(cell.x1 - cell.x0));
+    const float *roots = scratch + rest_from(cell) + roots_from(stride_of(cell));
     const int alpha = hf_layers(f->s)->channels == 4;
     for (int y = rows.y0; y < rows.y1 && !hf_stopped(f->s->stop); y++) {
         struct hf_lamp_tap tap[HF_LAYERS_LAMP_TAPS];
@@ -218,7 +219,7 @@ void hf_layers_leave_lamps(const struct hf_frame *f, struct hf_rect cell, struct
         for (int i = 0; i < HF_LAYERS_LAMP_TAPS; i++) {
             const int d = i % 2 ? away[i / 4] : -away[i / 4], dx = i & 2 ? 0 : d, dy = i & 2 ? d : 0;
             const int u = cell.x0 + dx, v = y + dy;
-            tap[i].root = roots + (v - cell.y0) * stride_of(cell.x1 - cell.x0) + dx;
+            tap[i].root = roots + (v - cell.y0) * stride_of(cell) + dx;
             for (int k = 0; k < 2; k++) {
                 tap[i].radius[k] = hf_at(&f->buf[HF_LAYERS_BUF_RADIUS], 0, 2 * u, 2 * v + k);
                 tap[i].alpha[k] = alpha ? hf_at(&f->buf[HF_LAYERS_BUF_COLOUR], 3, 2 * u, 2 * v + k) : NULL;
@@ -249,8 +250,7 @@ void hf_layers_highlights(const struct hf_frame *f, struct hf_rect cell, struct 
                           const struct hf_layers_any *any)
 {
     const int x0 = 2 * cell.x0, n = hf_min(2 * cell.x1, f->s->width) - x0, channels = hf_layers(f->s)->channels;
-    const ptrdiff_t stride = stride_of(cell.x1 - cell.x0),
-                    apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
+    const ptrdiff_t stride = stride_of(cell), apart[5] = {0, -APART, APART, -APART * stride, APART * stride};
     const float *mean = scratch + APART * stride + PAD, *cover = mean + cover_from(cell);
     for (int py = 2 * rows.y0; py < hf_min(2 * rows.y1, f->s->height) && !hf_stopped(f->s->stop); py++) {
         const float *around[5], *covered[5];

