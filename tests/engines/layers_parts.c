@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of layers one by one: how closely slices lie, which colour a side of an edge gets if none of its pixels is
-// un-mixed, what shows beside an edge in one pixel alone, how hairs are un-mixed where no pixel is sure, and how much a lamp
-// counts among hidden samples.
+// un-mixed, what shows beside an edge in one pixel alone, how hairs are un-mixed where no pixel is sure, how much a lamp
+// counts among hidden samples, and where runs of tiles begin and end.
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/layers/hidden.h"
 #include "engine/layers/kernels.h"
+#include "engine/layers/parts.h"
 #include "engine/layers/unmix.h"
 #include "frame/resolve.h"
 #include "pass/check.h"
@@ -118,7 +119,7 @@ static void farthest(void)
 }
 
 // The surroundings of the pixel in the middle, and both of its samples, as the kernel writes them.
-enum { BLOCK = 9, MIDDLE = 4, ROWS = 7 };
+enum { BLOCK = 9, CENTRE = 4, ROWS = 7 };
 struct block {
     float radius[BLOCK], sure[BLOCK], middle[BLOCK], slope[BLOCK], colour[ROWS][3][BLOCK], out[2][6][BLOCK];
 };
@@ -126,16 +127,16 @@ struct block {
 static void unmix_middle(struct block *b)
 {
     uint8_t any[1] = {0};
-    struct hf_unmix_row row = {.channels = 3, .middle = b->middle + MIDDLE, .slope = b->slope + MIDDLE, .any = any};
+    struct hf_unmix_row row = {.channels = 3, .middle = b->middle + CENTRE, .slope = b->slope + CENTRE, .any = any};
     for (int y = 0; y < ROWS; y++) {
-        row.radius[y] = b->radius + MIDDLE;
-        row.sure[y] = b->sure + MIDDLE;
+        row.radius[y] = b->radius + CENTRE;
+        row.sure[y] = b->sure + CENTRE;
         for (int c = 0; c < 3; c++)
-            row.colour[y][c] = b->colour[y][c] + MIDDLE;
+            row.colour[y][c] = b->colour[y][c] + CENTRE;
     }
     for (int i = 0; i < 6; i++) {
-        row.seen[i] = b->out[0][i] + MIDDLE;
-        row.mixed[i] = b->out[1][i] + MIDDLE;
+        row.seen[i] = b->out[0][i] + CENTRE;
+        row.mixed[i] = b->out[1][i] + CENTRE;
     }
     hf_layers_unmix_c(&row, 1);
 }
@@ -149,17 +150,17 @@ static void sliver(void)
     static const float bar[3] = {0.4f, 0.12f, 0.08f}, dark[3] = {0.25f, 0.1f, 0.1f}, bright[3] = {0.9f, 0.85f, 0.3f};
     struct block b = {.radius = {0}};
     for (int x = 0; x < BLOCK; x++) {
-        b.radius[x] = x < MIDDLE ? -8 : 8;
-        b.sure[x] = x < MIDDLE - 1 || x > MIDDLE;
+        b.radius[x] = x < CENTRE ? -8 : 8;
+        b.sure[x] = x < CENTRE - 1 || x > CENTRE;
         b.slope[x] = 2.0f / 16;
         for (int y = 0; y < ROWS; y++)
             for (int c = 0; c < 3; c++)
-                b.colour[y][c][x] = x < MIDDLE ? bar[c] : x > MIDDLE ? bright[c] : 0.4f * bar[c] + 0.6f * dark[c];
+                b.colour[y][c][x] = x < CENTRE ? bar[c] : x > CENTRE ? bright[c] : 0.4f * bar[c] + 0.6f * dark[c];
     }
     unmix_middle(&b);
-    CHECK_MSG(b.out[1][4][MIDDLE] >= 0.5f, "the back covers %g of the pixel", (double)b.out[1][4][MIDDLE]);
+    CHECK_MSG(b.out[1][4][CENTRE] >= 0.5f, "the back covers %g of the pixel", (double)b.out[1][4][CENTRE]);
     for (int c = 0; c < 3; c++) {
-        const double back = b.out[1][c][MIDDLE], off = fabs(back - dark[c]),
+        const double back = b.out[1][c][CENTRE], off = fabs(back - dark[c]),
                      most = fabs(bright[c] - dark[c]) / 4 + 3 * fabs(dark[c] - bar[c]) / 20;
         CHECK_MSG(off <= most + 8 * FLT_EPSILON, "channel %d of the back is %g, not %g", c, back, (double)dark[c]);
     }
@@ -181,9 +182,9 @@ static struct block hairs(int lit)
                 b.colour[y][c][x] = hair ? 0.1f : 0.9f;
     }
     for (int c = 0; c < 3; c++) {
-        b.colour[3][c][MIDDLE] = lit ? 30 : 0.4f * 0.1f + 0.6f * 0.9f;
+        b.colour[3][c][CENTRE] = lit ? 30 : 0.4f * 0.1f + 0.6f * 0.9f;
         if (lit)
-            b.colour[3][c][MIDDLE + 1] = 60;
+            b.colour[3][c][CENTRE + 1] = 60;
     }
     unmix_middle(&b);
     return b;
@@ -194,15 +195,15 @@ static void thicket(void)
     const struct block dark = hairs(0), lit = hairs(1);
     // Both means are exact. The share by depth, 0, counts a thousandth of the squares of both colours, 0.82, to the 0.64 of
     // their squared distance.
-    const float hair = dark.out[0][4][MIDDLE];
+    const float hair = dark.out[0][4][CENTRE];
     CHECK_MSG(hair > 0.4f * (1 - 0.0014f) && hair < 0.4f + 8 * FLT_EPSILON, "a hair covers %g of a pixel, not 0.4",
               (double)hair);
-    CHECK_MSG(dark.out[0][5][MIDDLE] == -2 && dark.out[1][5][MIDDLE] == 8, "radii %g and %g, not -2 and 8",
-              (double)dark.out[0][5][MIDDLE], (double)dark.out[1][5][MIDDLE]);
+    CHECK_MSG(dark.out[0][5][CENTRE] == -2 && dark.out[1][5][CENTRE] == 8, "radii %g and %g, not -2 and 8",
+              (double)dark.out[0][5][CENTRE], (double)dark.out[1][5][CENTRE]);
     // The lamp's own pixel is 256 times as bright as the middle one to the eighth power, so all but a 257th of the means is
     // replaced. The hair's mean before was at most that of the pixels beside it, 0.1, so less than a 30th of the light stays.
-    const float kept = lit.out[0][0][MIDDLE] * lit.out[0][4][MIDDLE];
-    const float back = lit.out[1][0][MIDDLE] * lit.out[1][4][MIDDLE];
+    const float kept = lit.out[0][0][CENTRE] * lit.out[0][4][CENTRE];
+    const float back = lit.out[1][0][CENTRE] * lit.out[1][4][CENTRE];
     CHECK_MSG(kept < 1, "%g of a lamp's light stay with a hair before it", (double)kept);
     CHECK_MSG(fabsf(kept + back - 30) < 1, "the pixel's light is %g, not 30", (double)(kept + back));
 }
@@ -227,6 +228,32 @@ static void lamp_in_line(void)
     CHECK(out[4] == 1 && fabsf(out[5] - 20) <= 28 * 20 * FLT_EPSILON);
 }
 
+// Runs of tiles with one of some bits: rows of all lengths, from all places on, against a loop over tiles.
+static void runs(void)
+{
+    enum { LONG = 40, BYTES = LONG + 7 };
+    uint8_t row[BYTES];
+    const struct hf_tile_map m = {.at = row, .stride = LONG};
+    unsigned seed = 1;
+    for (int i = 0; i < 20000; i++) {
+        const int bits = i % 3 ? i % 3 : 255;
+        for (int x = 0; x < BYTES; x++) {
+            seed = seed * 1664525u + 1013904223u;
+            // Half of the tiles are like the one before, so some runs are longer than eight.
+            row[x] = seed >> 31 && x ? row[x - 1] : (uint8_t)((seed >> 20 & 1) * (seed >> 24 & 3));
+        }
+        const int end = i % (LONG + 1), from = (i / 7) % (end + 1);
+        int first = from, last, tx = from;
+        while (first < end && !(row[first] & bits))
+            first++;
+        for (last = first; last < end && row[last] & bits;)
+            last++;
+        const int found = hf_layers_next_run(&m, &tx, 0, end, bits);
+        CHECK_MSG(tx == first && found == last, "tiles %d to %d of %d to %d, not %d to %d", tx, found, from, end, first,
+                  last);
+    }
+}
+
 int main(void)
 {
     for (int quality = HF_LAYERS_DRAFT; quality <= HF_LAYERS_BEST; quality++)
@@ -235,5 +262,6 @@ int main(void)
     sliver();
     thicket();
     lamp_in_line();
+    runs();
     return check_report();
 }

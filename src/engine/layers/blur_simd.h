@@ -95,7 +95,8 @@ static void layers_fold_simd(const float *in, int n, float *out)
         vf_unzip(vf_load(in + 2 * x), vf_load(in + 2 * x + VF_N), &even, &odd);
         vf_store(out + x, vf_add(even, odd));
     }
-    hf_layers_fold_c(in + 2 * x, n - x, out + x);
+    if (x < n)
+        hf_layers_fold_c(in + 2 * x, n - x, out + x);
 }
 
 // Whether a pixel within reach of a vector differs from 0 in either row.

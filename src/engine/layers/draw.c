@@ -121,21 +121,22 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     const struct hf_layers *l = c->l;
     const int level = b->s->level - b->finest, size = TILE >> b->finest, n = (end - tx) * size;
     const int px = (c->x0 >> b->finest) + tx * size, py = (c->y0 >> b->finest) + from * size + (y << level);
-    float *out[5];
+    float *const to = source_at(c, 0, tx * (TILE >> b->s->level), y), *out[5];
     int some = 0;
-    memset(c->any, 0, (size_t)(n + 15) / 16);
+    for (int i = 0; i < n; i += 128)
+        memset(c->any + i / 16, 0, 8);  // as one store; there is room around the cell
     for (int i = 0; i < 5; i++)
-        out[i] = level ? c->line[i] : source_at(c, i < 4 ? i : l->channels, tx * size, y);
+        out[i] = level ? c->line[i] : to + (i < 4 ? i : l->channels) * c->source.channel;
     weigh_run(c, b, tx, end, ty, px, py, out);
     for (int i = tx; i < end; i++) {
         const int any = c->any[(i - tx) * size / 16];
         *hf_layers_map_at(&c->filled, i, y / 2) |= (uint8_t)any;
         some |= any;
     }
-    for (int i = b->first; some && i < b->channels; i++) {
-        float *line = out[i < l->channels ? i : 4], *to = source_at(c, i, tx * (TILE >> b->s->level), y);
+    for (int i = b->first; some && level && i < b->channels; i++) {
+        float *line = out[i < l->channels ? i : 4];
         for (int j = level; j > 0; j--)
-            c->k->fold(line, n >> (level - j + 1), j > 1 ? line : to);
+            c->k->fold(line, n >> (level - j + 1), j > 1 ? line : to + i * c->source.channel);
     }
 }
 

@@ -2,6 +2,7 @@
 // Which tiles a slice has samples in, and which its blur reaches.
 #include <string.h>
 
+#include "base/bits.h"
 #include "engine/layers/parts.h"
 
 // The index of a tile in the frame's tables. A tile beyond the frame has that of the nearest tile, whose border it
@@ -188,18 +189,18 @@ int hf_layers_next_run(const struct hf_tile_map *m, int *tx, int ty, int end, in
 {
     const uint64_t every = (uint64_t)0x0101010101010101 * (uint64_t)(bits & 255);
     const uint8_t *row = hf_layers_map_at(m, 0, ty);
-    int from = *tx;
-    for (uint64_t eight; from + 8 <= end; from += 8) {
-        memcpy(&eight, row + from, sizeof eight);
-        if (eight & every)
+    int from = *tx, to;
+    uint64_t eight = 0;
+    while (from < end && !(eight = hf_bytes_at(row + from) & every))
+        from += 8;
+    from = hf_min(eight ? from + hf_first_byte(eight) : from, end);
+    for (to = from; to < end; to += 8)
+        if ((eight = hf_zero_bytes(hf_bytes_at(row + to) & every)) != 0) {
+            to += hf_first_byte(eight);
             break;
-    }
-    while (from < end && !(row[from] & bits))
-        from++;
+        }
     *tx = from;
-    while (from < end && (row[from] & bits))
-        from++;
-    return from;
+    return hf_min(to, end);
 }
 
 void hf_layers_clip_rows(const struct hf_cell *c, int level, int ty, int *y0, int *y1)
