@@ -30,13 +30,14 @@ static inline uint64_t hf_bytes_at(const uint8_t *p)
     return v;
 }
 
-// The number of the first byte that is marked or not 0; there must be one.
+// The number of the first byte that is not 0; there must be one.
 static inline int hf_first_byte(uint64_t bytes)
 {
     return __builtin_ctzll(bytes) / 8;
 }
 
-// Marks the first byte that is 0; nothing if there is none. Bytes after it may be marked wrongly, as a subtraction borrows there.
+// Not 0 in the first byte that is 0, and 0 in all before it, so hf_first_byte() of it finds that byte; 0 if there is none. Bytes
+// after the first may be wrong, as the subtraction borrows there.
 static inline uint64_t hf_zero_bytes(uint64_t bytes)
 {
     return (bytes - 0x0101010101010101) & ~bytes & 0x8080808080808080;

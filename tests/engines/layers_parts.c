@@ -234,14 +234,12 @@ static void runs(void)
     enum { LONG = 40, BYTES = LONG + 7 };
     uint8_t row[BYTES];
     const struct hf_tile_map m = {.at = row, .stride = LONG};
-    unsigned seed = 1;
+    struct rng r = rng_seed(1);
     for (int i = 0; i < 20000; i++) {
         const int bits = i % 3 ? i % 3 : 255;
-        for (int x = 0; x < BYTES; x++) {
-            seed = seed * 1664525u + 1013904223u;
-            // Half of the tiles are like the one before, so some runs are longer than eight.
-            row[x] = seed >> 31 && x ? row[x - 1] : (uint8_t)((seed >> 20 & 1) * (seed >> 24 & 3));
-        }
+        // Half of the tiles are like the one before, so some runs are longer than eight; of the others half are empty.
+        for (int x = 0; x < BYTES; x++)
+            row[x] = x && rng_below(&r, 2) ? row[x - 1] : (uint8_t)(rng_below(&r, 2) * rng_below(&r, 4));
         const int end = i % (LONG + 1), from = (i / 7) % (end + 1);
         int first = from, last, tx = from;
         while (first < end && !(row[first] & bits))

@@ -23,7 +23,7 @@ static struct hf_window take_window(struct hf_scratch *m, int width, int height,
 static struct hf_tile_map take_map(struct hf_scratch *m, int columns, int rows, int around)
 {
     struct hf_tile_map map = {.stride = columns + 2 * around};
-    const size_t n = (size_t)map.stride * (size_t)(rows + 2 * around) + 7;  // eight bytes are read at once
+    const size_t n = (size_t)map.stride * (size_t)(rows + 2 * around) + 7;  // see hf_layers_next_run()
     uint8_t *start = (uint8_t *)hf_layers_take(m, (n + sizeof(float) - 1) / sizeof(float), 0);
     map.at = start ? start + around * map.stride + around : NULL;
     return map;

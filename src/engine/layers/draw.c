@@ -124,7 +124,7 @@ static void build_run(const struct hf_cell *c, const struct hf_build *b, int tx,
     float *const to = source_at(c, 0, tx * (TILE >> b->s->level), y), *out[5];
     int some = 0;
     for (int i = 0; i < n; i += 128)
-        memset(c->any + i / 16, 0, 8);  // as one store; there is room around the cell
+        memset(c->any + i / 16, 0, 8);  // one store, perhaps past the run's last byte but never past c->any
     for (int i = 0; i < 5; i++)
         out[i] = level ? c->line[i] : to + (i < 4 ? i : l->channels) * c->source.channel;
     weigh_run(c, b, tx, end, ty, px, py, out);
