@@ -17,7 +17,8 @@ enum { NEAREST, FARTHEST, SIDES };
 
 // A lens that sees little past an edge needs pixels, not quads: up to NARROW pixels each one around is tested. From
 // half of that on quads begin to count.
-enum { NARROW = 8 };
+enum { NARROW = 8, AROUND = NARROW / 2 };
+_Static_assert((int)AROUND <= (int)HF_LAYERS_SMOOTH, "bands of quads reach farther than that");
 
 // A band of quads. away: the distance of a pixel so many columns and rows away. farthest: the largest visible radius
 // within a distance that grows from level to level. around: that of all pixels that narrow() looks at. Of each
@@ -86,8 +87,20 @@ static float front_of(float seen, float weight, float mixed)
     return weight > 0 && mixed < seen ? mixed : seen;
 }
 
+// The radius of the farther one.
+static float back_of(float seen, float weight, float mixed)
+{
+    return weight > 0 && mixed > seen ? mixed : seen;
+}
+
 // Samples of a quad this near to each other are of one surface.
 static const float ONE_SURFACE = 0.25f;
+
+// Whether a quad's samples are of two surfaces.
+static int has_two(const struct band *b, int k, ptrdiff_t quad)
+{
+    return b->apart[k][NEAREST][quad] > 0 && b->least[k][FARTHEST][quad] > b->least[k][NEAREST][quad] + ONE_SURFACE;
+}
 
 // Note what the samples of a row of quads need.
 static void look_row(struct band *b, int k, int y)
@@ -124,8 +137,7 @@ static void look_row(struct band *b, int k, int y)
         }
     }
     for (int x = 0; x < b->r.x1 - b->r.x0; x++)
-        if (b->apart[k][NEAREST][to + x] > 0 &&
-            b->least[k][FARTHEST][to + x] > b->least[k][NEAREST][to + x] + ONE_SURFACE)
+        if (has_two(b, k, to + x))
             b->sides[k] = SIDES;
 }
 
@@ -169,10 +181,30 @@ static void grow(const struct band *b, int step, int have)
     }
 }
 
-// Keep what narrow() needs to see at once that nothing leaves a sample in view.
-static void keep_around(const struct band *b)
+// The farthest surface of a row of quads' pixels: the visible one, or the back of a mixed edge.
+static void farthest_of(const struct band *b, int y, int x0, int x1, float *to)
 {
-    for (int y = 0; y < b->r.y1 - b->r.y0; y++)
+    for (int x = x0; x < x1; x++)
+        to[x - x0] = -HUGE_VALF;
+    for (int py = 2 * y; py < 2 * y + 2; py++) {
+        const float *radius = hf_at(&b->f->buf[HF_LAYERS_BUF_SEEN_AT], 1, 0, py),
+                    *weight = hf_at(&b->f->buf[HF_LAYERS_BUF_MIXED_AT], 0, 0, py),
+                    *behind = hf_at(&b->f->buf[HF_LAYERS_BUF_MIXED_AT], 1, 0, py);
+        for (int x = 2 * x0; x < 2 * x1; x++)
+            to[(x >> 1) - x0] = hf_larger(to[(x >> 1) - x0], back_of(radius[x], weight[x], behind[x]));
+    }
+}
+
+// Find the farthest surface that narrow() may meet around a quad, to see at once that none leaves a sample in view. Distances
+// are 1 and 1 + 3 quads.
+static void find_around(const struct band *b)
+{
+    const int width = b->r.x1 - b->r.x0, height = b->r.y1 - b->r.y0;
+    for (int y = -AROUND; y < height + AROUND && !hf_stopped(b->f->s->stop); y++)
+        farthest_of(b, b->r.y0 + y, b->r.x0 - AROUND, b->r.x0 + width + AROUND, b->farthest + y * b->wide - AROUND);
+    grow(b, 1, AROUND);
+    grow(b, AROUND - 1, AROUND - 1);
+    for (int y = 0; y < height; y++)
         memcpy(b->around + y * b->stride, b->farthest + y * b->wide, sizeof(float) * (size_t)(b->r.x1 - b->r.x0));
 }
 
@@ -182,6 +214,7 @@ static void find_open(struct band *b)
     const struct hf_buf *quads = &b->f->buf[HF_LAYERS_BUF_QUADS_AT];
     const int count = hf_layers(b->f->s)->given->count;
     float most = 0;
+    find_around(b);
     for (int y = b->r.y0 - b->reach; y < b->r.y1 + b->reach && !hf_stopped(b->f->s->stop); y++)
         memcpy(b->farthest + (y - b->r.y0) * b->wide - b->reach, hf_at(quads, 1, b->r.x0 - b->reach, y),
                sizeof(float) * (size_t)(b->r.x1 - b->r.x0 + 2 * b->reach));
@@ -199,11 +232,7 @@ static void find_open(struct band *b)
         for (int k = 0; k < count; k++)
             for (int side = 0; side < b->sides[k]; side++)
                 test(b, k, side, before, from);
-        const int last = (float)from >= most || from + step > b->reach;
-        // The quads of pixels up to NARROW + 1 away.
-        if (before < (NARROW + 2) / 2 && (last || from >= (NARROW + 2) / 2))
-            keep_around(b);
-        if (last)
+        if ((float)from >= most || from + step > b->reach)
             break;
         grow(b, step, b->reach - from);
         before = from;
@@ -245,7 +274,7 @@ static float narrow(const struct band *b, int x, int y, float apart, float r)
                     *behind = hf_at(mixed, 1, x, y + v), *away = b->away[v < 0 ? -v : v];
         for (int u = -reach; u <= reach; u++) {
             const float reached = hf_saturate(apart + 0.5f - away[u < 0 ? -u : u]);
-            const float back = weight[u] > 0 && behind[u] > radius[u] ? behind[u] : radius[u];
+            const float back = back_of(radius[u], weight[u], behind[u]);
             const float here = reached * (1 - hf_layers_hides(r - 1 - back));
             open = here > open ? here : open;
         }
@@ -258,7 +287,7 @@ static float narrow(const struct band *b, int x, int y, float apart, float r)
 static float in_view(const struct band *b, int k, ptrdiff_t quad, float r)
 {
     const float near = b->open[k][NEAREST][quad];
-    if (b->sides[k] == 1)
+    if (!has_two(b, k, quad))
         return near;
     const float behind = hf_saturate((r - 1 - b->least[k][NEAREST][quad]) / ONE_SURFACE - 1);
     return near + behind * (b->open[k][FARTHEST][quad] - near);
@@ -295,7 +324,8 @@ static void take_known(const struct band *b, int k, const struct seen *seen, int
                     same = part > 0 ? hf_known_beside(part, seen->radius[1][i], r) : 0;
         for (int c = 0; c < f->s->channels; c++) {
             const float v = hf_known_within(known->colour[c][at + i] / all, largest);
-            out[c][i] = guessed ? 1 : v + same * (mixed[c][i] - v);
+            // Without weight a mixed sample's colour is undefined.
+            out[c][i] = guessed ? 1 : same > 0 ? v + same * (mixed[c][i] - v) : v;
         }
     }
 }
