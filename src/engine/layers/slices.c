@@ -50,9 +50,10 @@ static void make_disc(struct hf_slice *s, double r, double wide, struct hf_disc_
     s->row = row;
     s->scale = 1;
     s->reach = 0;
-    double sum = 0;
+    double sum = 0, from = r > 0 ? hf_half_disc(r, -0.5) : 0;
     for (int d = 0; d < s->rows; d++) {
-        const double h = r > 0 ? (hf_half_disc(r, d + 0.5) - hf_half_disc(r, d - 0.5)) * wide : 0.5;
+        const double to = r > 0 ? hf_half_disc(r, d + 0.5) : 0, h = r > 0 ? (to - from) * wide : 0.5;
+        from = to;
         const double whole = floor(h - 0.5);
         row[d].n = h < 0.5 ? -1 : (int)whole;
         row[d].f = (float)(h < 0.5 ? 2 * h : h - 0.5 - whole);
