@@ -134,6 +134,7 @@ static int open_context(struct hf_context **out, const struct hf_config *g)
     c->mem = mem;
     c->isa = isa;
     c->pid = hf_process();
+    hf_queue_open(&c->queue);
     c->threads = g->threads ? g->threads : hf_min(hf_system_processors(), MAX_THREADS);
     const int err = set_up(c);
     if (err) {
@@ -176,6 +177,7 @@ void hf_close(struct hf_context **context)
     if (c->workers)
         c->mem.free(c->mem.cookie, c->workers);
     hf_engines_close(c);
+    hf_queue_close(&c->queue, &c->mem);
     hf_block_free(&c->planes, &c->mem);
     hf_block_free(&c->chunks, &c->mem);
     hf_block_free(&c->tiles, &c->mem);

@@ -8,6 +8,7 @@
 #include "pass/engine.h"
 #include "frame/plan.h"
 #include "frame/progress.h"
+#include "frame/queue.h"
 #include "base/pool.h"
 #include "frame/resolve.h"
 #include "pass/check.h"
@@ -41,6 +42,7 @@ struct hf_context {
     struct hf_worker *workers;
 
     struct hf_plan plan;
+    struct hf_queue queue;
     struct hf_block planes;         // buffers of the whole frame
     struct hf_block chunks, tiles;  // the plan's
     struct hf_block joined;         // CoC for a dump: of full resolution, or of narrow buffers

@@ -186,8 +186,7 @@ static struct hf_rect half_region(const struct hf_setup *s)
     return (struct hf_rect){r.x0 / 2, r.y0 / 2, (r.x1 + 1) / 2, (r.y1 + 1) / 2};
 }
 
-// How far around what a sweep makes it reads buffers of the whole frame.
-static struct hf_reach sweep_reach(const struct hf_plan *p, const struct hf_setup *s, int sweep)
+struct hf_reach hf_plan_reach(const struct hf_plan *p, const struct hf_setup *s, int sweep)
 {
     const struct hf_engine_def *e = p->engine;
     struct hf_reach reach = {0, 0};
@@ -215,7 +214,7 @@ static void find_areas(struct hf_plan *p, const struct hf_setup *s)
         if (whole && hf_plan_sweep_runs(p, s, sweep))
             r = stepped(p, r, p->cells.width[sweep], p->cells.height[sweep]);
         p->area[sweep] = r;
-        r = grown(p, r, sweep_reach(p, s, sweep));
+        r = grown(p, r, hf_plan_reach(p, s, sweep));
     }
     p->area[1] = r;
     p->looked = all;

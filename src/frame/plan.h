@@ -64,6 +64,8 @@ void hf_plan_settle(struct hf_plan *p, const struct hf_setup *s, int scan);
 int hf_plan_makes_chunks(const struct hf_plan *p);
 // Whether a sweep's cells are the tiles, which run as far as they need.
 int hf_plan_is_tiled(const struct hf_plan *p, int sweep);
+// How far around what a later sweep makes it reads buffers of the whole frame.
+struct hf_reach hf_plan_reach(const struct hf_plan *p, const struct hf_setup *s, int sweep);
 // Whether a pass, or any pass of a sweep, runs with these options.
 int hf_plan_pass_runs(const struct hf_plan *p, const struct hf_setup *s, int pass);
 int hf_plan_sweep_runs(const struct hf_plan *p, const struct hf_setup *s, int sweep);

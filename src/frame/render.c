@@ -2,7 +2,8 @@
 // One frame, step by step. The first sweep reads the depth, chunk by chunk, and makes the first buffers where they will
 // certainly be read. Its findings make the plan. Chunks that the plan reads and that are missing are made. The other
 // sweeps take each cell through its passes while its buffers are in the cache. A step begins when the last one has
-// ended, so a frame takes the same path the first time and later, in place and out of place, on any number of threads.
+// ended, so a frame takes the same path the first time and later, in place and out of place, on any number of threads. Only
+// cells of the later sweeps begin when what they read is done, on the context's own threads: a host's may not wait.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -36,6 +37,7 @@ static int parallel(struct hf_render *r, int n, void (*fn)(void *arg, int i, int
         hf_pool_run(c->pool, n, run_task, r);
     else if (n > 0)
         c->config.parallel_for(c->config.parallel_cookie, n, run_task, r);
+    hf_progress_add(&r->progress, 0, 0);  // other threads may have had all of the work
     return cancelled(r);
 }
 
@@ -82,7 +84,8 @@ static int lay_out_cells(struct hf_render *r, unsigned fields)
         return err;
     hf_plan_tile_memory(&c->plan, c->tiles.data);
     r->have = fields;
-    return hf_buffers_allocate(c, r->s, fields);
+    const int queue = hf_queue_lay_out(&c->queue, &c->plan, r->s, &c->mem);
+    return queue ? queue : hf_buffers_allocate(c, r->s, fields);
 }
 
 // Lay out chunks, cells and buffers, as far as they are known before the depth is.
@@ -134,7 +137,13 @@ static int finish_chunks(struct hf_render *r)
 static int make_tiles(struct hf_render *r)
 {
     const struct hf_plan *p = &r->c->plan;
+    struct hf_queue *q = &r->c->queue;
     int err = HF_OK;
+    // Sweeps of one cell each run on the caller's thread, whose buffers a dump shows.
+    if (p->needs && r->c->pool && r->c->threads > 1 && q->steps > 1 && q->count > q->steps) {
+        hf_queue_fill(q, r->c->threads);
+        return parallel(r, q->count, hf_sweep_next);
+    }
     for (r->sweep = 2; !err && r->sweep <= p->engine->sweeps; r->sweep++)
         if (r->sweep == p->engine->sweeps || (p->needs && hf_plan_sweep_runs(p, r->s, r->sweep)))
             err = parallel(r, hf_plan_count(p, r->sweep), hf_sweep_cell);

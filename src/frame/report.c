@@ -54,8 +54,8 @@ struct hf_counts hf_report_counts(const struct hf_context *c)
 // All but the buffers.
 static size_t memory_beside(const struct hf_context *c)
 {
-    return sizeof *c + c->chunks.size + c->tiles.size + c->joined.size + c->repairs.size + c->surfaces.size +
-           c->samples.size + hf_engines_bytes(c) + (c->pool ? hf_pool_bytes(c->threads) : 0) +
+    return sizeof *c + c->chunks.size + c->tiles.size + c->queue.memory.size + c->joined.size + c->repairs.size +
+           c->surfaces.size + c->samples.size + hf_engines_bytes(c) + (c->pool ? hf_pool_bytes(c->threads) : 0) +
            (size_t)c->threads * sizeof *c->workers;
 }
 

@@ -141,17 +141,16 @@ void hf_sweep_copy(void *arg, int tile, int worker)
     hf_progress_add(&r->progress, worker, 1);
 }
 
-void hf_sweep_cell(void *arg, int i, int worker)
+static void run_cell(struct hf_render *r, int sweep, int i, int worker)
 {
-    struct hf_render *r = arg;
     const struct hf_plan *p = &r->c->plan;
     struct hf_worker *w = &r->c->workers[worker];
-    struct hf_rect cell = hf_plan_cell(p, r->sweep, i);
-    const int is_tile = hf_plan_is_tiled(p, r->sweep), last = r->sweep == p->engine->sweeps;
+    struct hf_rect cell = hf_plan_cell(p, sweep, i);
+    const int is_tile = hf_plan_is_tiled(p, sweep), last = sweep == p->engine->sweeps;
     const unsigned needs = is_tile ? p->tile_needs[i] : p->needs;
     if (!needs) {
         if (last)
-            hf_sweep_copy(arg, i, worker);
+            hf_sweep_copy(r, i, worker);
         return;
     }
     if (is_tile) {
@@ -160,18 +159,35 @@ void hf_sweep_cell(void *arg, int i, int worker)
             copy_around(r, w, cell, active);
         cell = active;
     } else {
-        cell = hf_rect_both(cell, p->area[r->sweep]);
+        cell = hf_rect_both(cell, p->area[sweep]);
         if (cell.x0 >= cell.x1 || cell.y0 >= cell.y1)
             return;
     }
-    hf_buffers_place(r->c, r->s, &w->frame, r->sweep, cell);
+    hf_buffers_place(r->c, r->s, &w->frame, sweep, cell);
     set_fields(&w->frame, needs);
     int64_t clock = hf_now_ns();
     for (int pass = 0; pass < p->engine->pass_count; pass++) {
         const struct hf_pass *def = &p->engine->passes[pass];
-        if (def->sweep == r->sweep && (!def->field || (def->field & needs)) && hf_plan_pass_runs(p, r->s, pass))
+        if (def->sweep == sweep && (!def->field || (def->field & needs)) && hf_plan_pass_runs(p, r->s, pass))
             run_pass(r, w, pass, cell, &clock);
     }
+}
+
+void hf_sweep_cell(void *arg, int cell, int worker)
+{
+    struct hf_render *r = arg;
+    run_cell(r, r->sweep, cell, worker);
+}
+
+void hf_sweep_next(void *arg, int i, int worker)
+{
+    struct hf_render *r = arg;
+    int sweep;
+    const int cell = hf_queue_take(&r->c->queue, &r->c->plan, &sweep);
+    const int64_t start = hf_now_ns();
+    (void)i;
+    run_cell(r, sweep, cell, worker);
+    hf_queue_finish(&r->c->queue, sweep, cell, hf_now_ns() - start);
 }
 
 void hf_sweep_colour(void *arg, int i, int worker)

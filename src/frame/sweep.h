@@ -29,8 +29,9 @@ void hf_sweep_rest(void *arg, int i, int worker);
 void hf_sweep_colour(void *arg, int chunk, int worker);
 // Find what each tile of a row needs.
 void hf_sweep_classify(void *arg, int row, int worker);
-// Run a cell of a later sweep: its passes, and in the last sweep the copy of its sharp part.
+// Run a cell of a later sweep: its passes, and in the last sweep the copy of its sharp part. Or the next one of the queue.
 void hf_sweep_cell(void *arg, int cell, int worker);
+void hf_sweep_next(void *arg, int i, int worker);
 // Check or copy a tile of a frame without blur.
 void hf_sweep_check(void *arg, int tile, int worker);
 void hf_sweep_copy(void *arg, int tile, int worker);

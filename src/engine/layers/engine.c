@@ -366,6 +366,12 @@ static struct hf_reach around(const struct hf_setup *s, int sweep)
     }
 }
 
+// What is searched and drawn depends on whether alpha is 1 in the whole frame.
+static int waits(const struct hf_setup *s, int sweep)
+{
+    return sweep == 3 && s->channels == 4;
+}
+
 static struct hf_reach spread(const struct hf_setup *s, const struct hf_cells *p, unsigned field)
 {
     const struct hf_layers *l = hf_layers(s);
@@ -479,6 +485,7 @@ const struct hf_engine_def hf_layers_engine = {
             .tell = tell, .shown = "slices", .show = hf_layers_show_slices, .release = release, .held = held},
     .plan = {.across = 1u << 2 | 1u << 3 | 1u << 4,
              .around = around,
+             .waits = waits,
              .parts = 1u << 2 | 1u << 3 | 1u << 4,
              .grain = HF_LAYERS_TILE / 2,
              .zero = zero,
