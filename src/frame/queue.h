@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The cells of all sweeps but the first, in one queue. A cell begins when the cells that it reads are done, so no thread waits
-// for the last cell of a sweep; and the last sweep begins with the cells that took longest in the frame before.
+// for the last cell of a sweep; and cells of the last sweep that were the shortest in the frame before come last.
 #ifndef HF_QUEUE_H
 #define HF_QUEUE_H
 

@@ -140,7 +140,7 @@ static int make_tiles(struct hf_render *r)
     struct hf_queue *q = &r->c->queue;
     int err = HF_OK;
     // Sweeps of one cell each run on the caller's thread, whose buffers a dump shows.
-    if (p->needs && r->c->pool && r->c->threads > 1 && q->steps > 1 && q->count > q->steps) {
+    if (p->needs && r->c->pool && r->c->threads > 1 && p->engine->plan.waits && q->count > q->steps) {
         hf_queue_fill(q, r->c->threads);
         return parallel(r, q->count, hf_sweep_next);
     }
