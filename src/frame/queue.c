@@ -123,8 +123,7 @@ int hf_queue_may_take(const struct hf_queue *q, const struct hf_plan *p, int ste
     return 1;
 }
 
-// The first cell that may begin, or -1.
-static int find(const struct hf_queue *q, const struct hf_plan *p, int *step)
+int hf_queue_first(const struct hf_queue *q, const struct hf_plan *p, int *step)
 {
     for (*step = 0; *step < q->steps && may_begin(q, *step); ++*step)
         for (int i = 0; q->step[*step].left && i < q->step[*step].count; i++) {
@@ -135,7 +134,7 @@ static int find(const struct hf_queue *q, const struct hf_plan *p, int *step)
     return -1;
 }
 
-int hf_queue_take(struct hf_queue *q, const struct hf_plan *p, int *sweep)
+int hf_queue_take(struct hf_queue *q, const struct hf_plan *p, hf_queue_find *find, int *sweep)
 {
     int step, cell;
     hf_lock_take(&q->lock);

@@ -39,9 +39,12 @@ int hf_queue_lay_out(struct hf_queue *q, const struct hf_plan *p, const struct h
 void hf_queue_fill(struct hf_queue *q, int threads);
 // Whether a cell of a step is neither taken nor done, and what it reads is done.
 int hf_queue_may_take(const struct hf_queue *q, const struct hf_plan *p, int step, int cell);
-// Take the next cell, and wait until there is one. Call it at most as often as there are cells. *sweep: the cell's; returns its
-// number in that sweep.
-int hf_queue_take(struct hf_queue *q, const struct hf_plan *p, int *sweep);
+// Finds a cell that may be taken: returns its number in *step, or -1 if there is none. hf_queue_first finds the first.
+typedef int hf_queue_find(const struct hf_queue *q, const struct hf_plan *p, int *step);
+hf_queue_find hf_queue_first;
+// Take a cell, and wait until one is found. Call it at most as often as there are cells. *sweep: the cell's; returns its number
+// in that sweep.
+int hf_queue_take(struct hf_queue *q, const struct hf_plan *p, hf_queue_find *find, int *sweep);
 // Tell that a cell is done, and how long it took.
 void hf_queue_finish(struct hf_queue *q, int sweep, int cell, int64_t ns);
 

@@ -183,7 +183,7 @@ void hf_sweep_next(void *arg, int i, int worker)
 {
     struct hf_render *r = arg;
     int sweep;
-    const int cell = hf_queue_take(&r->c->queue, &r->c->plan, &sweep);
+    const int cell = hf_queue_take(&r->c->queue, &r->c->plan, hf_queue_first, &sweep);
     const int64_t start = hf_now_ns();
     (void)i;
     run_cell(r, sweep, cell, worker);

@@ -14,9 +14,10 @@
 static int any;
 static struct rng choice;
 
-int __wrap_hf_queue_take(struct hf_queue *q, const struct hf_plan *p, int *sweep);
+int __real_hf_queue_take(struct hf_queue *q, const struct hf_plan *p, hf_queue_find *find, int *sweep);
+int __wrap_hf_queue_take(struct hf_queue *q, const struct hf_plan *p, hf_queue_find *find, int *sweep);
 
-static int find(struct hf_queue *q, const struct hf_plan *p, int *step)
+static int find_last(const struct hf_queue *q, const struct hf_plan *p, int *step)
 {
     for (*step = q->steps - 1; *step >= 0; --*step) {
         const int count = q->step[*step].count, from = any ? rng_below(&choice, count) : count - 1;
@@ -27,16 +28,10 @@ static int find(struct hf_queue *q, const struct hf_plan *p, int *step)
     return -1;
 }
 
-int __wrap_hf_queue_take(struct hf_queue *q, const struct hf_plan *p, int *sweep)
+int __wrap_hf_queue_take(struct hf_queue *q, const struct hf_plan *p, hf_queue_find *find, int *sweep)
 {
-    int step, cell;
-    hf_lock_take(&q->lock);
-    while ((cell = find(q, p, &step)) < 0)
-        hf_condition_wait(&q->done, &q->lock);
-    q->state[q->step[step].first + cell] = HF_CELL_TAKEN;
-    hf_lock_release(&q->lock);
-    *sweep = q->step[step].sweep;
-    return cell;
+    (void)find;
+    return __real_hf_queue_take(q, p, find_last, sweep);
 }
 
 // One cell after the other, without a queue.

@@ -104,7 +104,7 @@ static void task(void *arg, int i, int worker)
     int sweep;
     (void)i;
     (void)worker;
-    const int cell = hf_queue_take(&f->queue, &f->plan, &sweep);
+    const int cell = hf_queue_take(&f->queue, &f->plan, hf_queue_first, &sweep);
     atomic_fetch_add(&f->taken[sweep][cell], 1);
     check_order(f, sweep, cell);
     for (const int64_t end = hf_now_ns() + SLOW_NS; (cell + f->slow) % 8 == 0 && hf_now_ns() < end;)
@@ -154,7 +154,7 @@ static void short_cells_last(void)
         hf_queue_fill(&queue, 2);
         for (int i = 0; i < 10; i++) {
             int sweep;
-            const int cell = hf_queue_take(&queue, &plan, &sweep);
+            const int cell = hf_queue_take(&queue, &plan, hf_queue_first, &sweep);
             CHECK_INT(sweep, LAST);
             CHECK_INT(cell, frame ? order[i] : i);
             hf_queue_finish(&queue, sweep, cell, took[cell]);
