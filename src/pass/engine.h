@@ -141,8 +141,8 @@ struct hf_engine_plan {
     // part of its cells, of columns and rows in steps of 16 and 8, in place of all.
     struct hf_reach (*around)(const struct hf_setup *s, int sweep);
     unsigned parts;
-    // Do cells of a sweep read what follows from all cells of the sweep before? Otherwise they begin when those that they read,
-    // see around, are done, and no pass of the sweep writes what the sweep before reads. NULL: yes, in all sweeps.
+    // Must all cells of the sweep before be done when a cell of this sweep begins? If not, only those must be done that lie
+    // within its reach, see around; the sweep must then write nothing that the sweep before reads. NULL: yes, in all sweeps.
     int (*waits)(const struct hf_setup *s, int sweep);
     // Size of a sweep's cells, half-resolution pixels; holds the default, widths stay multiples of 16. NULL: the default.
     void (*cell)(const struct hf_setup *s, int sweep, int *width, int *height);

@@ -195,8 +195,8 @@ static void farthest_of(const struct band *b, int y, int x0, int x1, float *to)
     }
 }
 
-// Find the farthest surface that narrow() may meet around a quad, to see at once that none leaves a sample in view. Distances
-// are 1 and 1 + 3 quads.
+// Find the farthest surface that narrow() may meet around a quad, to see at once that none leaves a sample in view. The
+// neighbourhood grows by 1 quad and then by 3, to AROUND in all.
 static void find_around(const struct band *b)
 {
     const int width = b->r.x1 - b->r.x0, height = b->r.y1 - b->r.y0;
